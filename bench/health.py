@@ -55,9 +55,9 @@ def figures(years: int, clean: int, seed: int) -> None:
     """Print lines of clean years by schedule, and of changes; steps come on quiet axes."""
     wanted = [
         ('weekly', CLEAN, clean),
-        ('daily', CLEAN, clean // 10),
-        ('monthly runs of 90 s at 10 Hz', CLEAN, clean // 5),
-        ('weekly', FAULTS[OTHER], years // 3),
+        ('daily', CLEAN, clean),
+        ('monthly runs of 90 s at 10 Hz', CLEAN, clean),
+        ('weekly', FAULTS[OTHER], years),
         ('weekly', STEP, years),
     ]
     bar, table = Progress(sum(count for _, _, count in wanted), 'years'), []
@@ -69,12 +69,12 @@ def figures(years: int, clean: int, seed: int) -> None:
             options = SCHEDULES[way] | (quiet if fault is STEP else {})
             courses.append(score_of(axis_year(number, fault, **options), causes=False))
             bar.step()
-        table.append(Score.of(Kind(way, fault.name, {}), courses))
+        line = Score.of(Kind(way, fault.name, {}), courses)
+        alarms, soon = (round(line.years * share) for share in (line.early / 100.0, line.soon))
+        print(f'{way}, {fault.name}: {alarms} alarms, {soon} found in 8 weeks', flush=True)
+        table.append(line)
     bar.close()
     print_table(table)
-    for line in table:
-        alarms, soon = (round(line.years * share) for share in (line.early / 100.0, line.soon))
-        print(f'{line.kind.way}, {line.kind.fault}: {alarms} alarms, {soon} found in 8 weeks')
 
 
 def compare(years: int, clean: int, seed: int) -> None:

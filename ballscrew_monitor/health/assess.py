@@ -8,9 +8,9 @@ and lubrication.
 
 """
 
-from collections.abc import Sequence
 import dataclasses
 import math
+from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Limits
@@ -18,11 +18,10 @@ from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by_day
 from ballscrew_monitor.health.causes import causes_of, likely
 from ballscrew_monitor.health.change import changes_of, marks_of
-from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.detection import BASELINE_DAYS, latched, Look, looks
 from ballscrew_monitor.health.energy import energy_quantities
 from ballscrew_monitor.health.history import history_of
-from ballscrew_monitor.health.life import life_quantities, shaft_notes
+from ballscrew_monitor.health.life import life_quantities, rated_of, recent, shaft_notes
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
     lubrication_rate,
@@ -33,7 +32,6 @@ from ballscrew_monitor.health.lubrication import (
 from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.records import (
     Cause,
-    Cell,
     CellKind,
     Condition,
     Health,
@@ -50,6 +48,7 @@ from ballscrew_monitor.health.usual import usual_warnings
 from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
 from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.surface import Surface
 
 RECENT, SHORT = 28, 7
@@ -57,8 +56,7 @@ RECENT, SHORT = 28, 7
 FEWEST_CELLS = 10
 DRAG, SMALLEST = 'drag change', 'smallest loss shown'
 CHANGED = (Condition.WORSE, Condition.SLIGHTLY_CHANGED)
-NEW_PROGRAMME = 0.5
-"""Share of the motion at places that the baseline lacks, from which the programme changed [-]."""
+NEW_PROGRAMME = 0.5  # share of the motion at places new to the baseline: another programme [-]
 ALARM_RATE = 'at most one clean year of a hundred ends in a false alarm'
 
 
@@ -85,46 +83,45 @@ class Course:
         self, axis: str, kept: KeptHealth, surface: Surface, settings: HealthSettings
     ) -> None:
         self.axis, self.kept, self.surface, self.settings = axis, kept, surface, settings
-        self.baseline = in_force(
-            kept.baselines, motion_by_day(kept.spectrum), settings.baseline_days
-        )
+        days = settings.baseline_days
+        baseline = in_force(kept.baselines, motion_by_day(kept.spectrum), days)
         cells = array_of(kept.cells)
-        self.history = history_of(cells[cells['start'] >= self.baseline.begin], surface.lead)
+        self.cells = cells[cells['start'] >= baseline.begin]
+        self.history = history_of(self.cells, surface.lead)
+        self.starts: list[int] = [] if self.history is None else self.history.start.tolist()
         self.looks: list[Look] = []
         if self.history is not None:
-            first, days = int(self.history.start[0]), settings.baseline_days
+            first = self.starts[0]
             if kept.baselines and kept.baselines[-1].end:
-                days = (self.baseline.end - first) / DAY
+                days = (baseline.end - first) / DAY
             else:
                 end = first + round(days * DAY)
-                self.baseline = dataclasses.replace(self.baseline, begin=first, end=end)
+                baseline = dataclasses.replace(baseline, begin=first, end=end)
             self.looks += looks(self.history, baseline_days=days, prior=settings.prior)
-        self.states = latched(self.looks)
-        self.cells = cells[cells['start'] >= self.baseline.begin]
+        self.states, self.baseline = latched(self.looks), baseline
 
     def healths(self, now: int) -> list[Health]:
         """Return the health after each log, the last one at `now` [ns]."""
-        history = [] if self.history is None else self.history.start.tolist()
-        place = {start: at for at, start in enumerate(history)}
-        *starts, _ = np.unique(self.cells['start']).tolist() or [0]
-        earlier = (
-            self._after(place[start]) if start in place else self._silent(start)
-            for start in starts
-        )
-        return [*earlier, self.latest(now)]
+        *earlier, _ = np.unique(self.cells['start']).tolist() or [0]
+        return [*map(self._after, earlier), self.latest(now)]
 
-    def _silent(self, start: int) -> Health:
-        """Return the health after a log without motion that counts."""
-        return _unknown(self.axis, start, missing_reason(self.cells[self.cells['start'] == start]))
-
-    def _after(self, at: int) -> Health:
-        """Return the health after a log: the change of the drag with its date and causes."""
-        assert self.history is not None
-        look, condition, since = self.looks[at], self.states[at].condition, self._since(at)
-        drag, causes = _drag(look), self._causes(at)
+    def _after(self, start: int) -> Health:
+        """Return the health after a log: the change of the friction with its date and causes."""
+        if start not in self.starts:
+            return _unknown(self.axis, start, self.cells[self.cells['start'] == start])
+        at = self.starts.index(start)
+        look, (condition, onset) = self.looks[at], self.states[at]
+        since = self.starts[onset] if onset >= 0 else 0
+        if look.is_known:
+            text = f'the last {look.now} logs against {look.baseline} of the baseline'
+            drag = quantity(DRAG, '-', (look.change, look.low, look.high), text)
+        else:
+            drag = unknown(DRAG, '-', f'not known yet: {look.reason}')
+        proven = condition in CHANGED and look.low * look.high > 0.0
+        causes = self._causes(at, since) if proven else []
         return Health(
             axis=self.axis,
-            stamp=int(self.history.start[at]),
+            stamp=start,
             condition=condition,
             verdict=verdict_of(self.axis, condition, drag, causes, since),
             advice=advice_of(condition, causes),
@@ -135,14 +132,27 @@ class Course:
             doubt=look.doubt,
         )
 
+    def _causes(self, at: int, since: int) -> list[Cause]:
+        """Return the causes of a proven change since a date [ns] after a log."""
+        assert self.history is not None
+        look, history = self.looks[at], self.history.until(at + 1)
+        reversals = self.cells[self.cells['kind'] == CellKind.REVERSAL]
+        grew = lost_motion_grew(reversals, since, self.starts[at])
+        marks = marks_of(history, look)._replace(lost_motion=grew)
+        preload = float(self.surface.header.get('service', {}).get('preload', math.nan))
+        return causes_of(changes_of(history, look), marks, math.log1p(look.change), preload)
+
     def latest(self, now: int) -> Health:
-        """Return the health at `now` [ns], with all that is told beside the drag."""
-        if self.looks:
-            health = self._after(len(self.looks) - 1)
-        else:
-            health = _unknown(self.axis, now, self._missing())
+        """Return the health at `now` [ns], with all that is told beside the friction."""
         today, surface, settings = day_of(now), self.surface, self.settings
-        points = [
+        if self.looks:
+            health = self._after(self.starts[-1])
+        elif self.kept.baselines and any(cell.direction for cell in self.kept.cells):
+            reason = 'not known yet: no log since the baseline was named'
+            health = _unknown(self.axis, now, reason)
+        else:
+            health = _unknown(self.axis, now, array_of(self.kept.cells))
+        cells = [
             cell
             for cell in sorted(self.kept.cells, key=lambda cell: cell.start)
             if cell.kind == CellKind.MOTION
@@ -151,68 +161,55 @@ class Course:
         ]
         spectrum = [each for each in self.kept.spectrum if each.first_day <= today]
         known = self.baseline if self.looks and self.looks[-1].is_known else None
-        changed = health.condition in CHANGED
-        usual = None if changed else usual_boundary(points, known, surface, today)
-        recent = recent_of(points, today)
-        where, worn = where_on_screw(self.cells, None if self.history is None else self.baseline)
-        notes = ['' if usual is None else boundary_note(*usual), *worn, *self._notes()]
+        normal = None if health.condition in CHANGED else known
+        usual = usual_boundary(cells, normal, surface, today)
+        latest = recent(cells, today, SHORT)
+        if len(latest) < FEWEST_CELLS:
+            latest = recent(cells, today, RECENT)
         advice = health.advice
         if not advice and usual is None:
             free = settings.speed_allowed
-            advice = remedy_text(recent, surface, settings.limits, speed_allowed=free)
+            advice = remedy_text(latest, surface, settings.limits, speed_allowed=free)
         rated = rated_of(surface.header)
+        where, worn = where_on_screw(self.cells, self.baseline if self.looks else None)
+        speed = max((abs(cell.speed) for cell in latest), default=0.0)
+        load = max((abs(opposed(cell)) for cell in latest), default=0.0)
         return dataclasses.replace(
             health,
             stamp=now,
             advice=advice,
             quantities=[
                 *health.quantities,
-                self._smallest(),
-                _preload(health),
+                *self._bounds(health),
                 *life_quantities(spectrum, rated, today),
-                lubrication_rate(points, surface, rated, today),
+                lubrication_rate(cells, surface, rated, today),
                 *severity_quantities(spectrum, known, today),
                 *energy_quantities(spectrum, known, today),
                 *where,
             ],
             baseline=known,
-            notes=[*filter(None, notes), *_shaft_notes(surface, recent)],
+            notes=[
+                *([] if usual is None else [boundary_note(*usual)]),
+                *worn,
+                *filter(None, self._notes()),
+                *shaft_notes(surface.header, speed, load),
+            ],
             usual=usual is not None,
-            usual_warnings=usual_warnings(
-                points, None if changed else known, surface, settings.limits
-            ),
+            usual_warnings=usual_warnings(cells, normal, surface, settings.limits),
         )
 
-    def _missing(self) -> str:
-        if self.kept.baselines and any(cell.direction for cell in self.kept.cells):
-            return 'not known yet: no log since the baseline was named'
-        return missing_reason(array_of(self.kept.cells))
-
-    def _since(self, at: int) -> int:
-        """Return the date [ns] since which the condition is latched, 0 for none."""
-        assert self.history is not None
-        since = self.states[at].since
-        return int(self.history.start[since]) if since >= 0 else 0
-
-    def _causes(self, at: int) -> list[Cause]:
-        """Return the causes of a change that is latched and still proven."""
-        assert self.history is not None
-        look, header = self.looks[at], self.surface.header
-        if self.states[at].condition not in CHANGED or not look.low * look.high > 0.0:
-            return []
-        history = self.history.until(at + 1)
-        reversals = self.cells[self.cells['kind'] == CellKind.REVERSAL]
-        grew = lost_motion_grew(reversals, self._since(at), int(history.start[-1]))
-        marks = marks_of(history, look)._replace(lost_motion=grew)
-        preload = float(header.get('service', {}).get('preload', math.nan))
-        return causes_of(changes_of(history, look), marks, math.log1p(look.change), preload)
-
-    def _smallest(self) -> Quantity:
-        if not self.looks or not self.looks[-1].is_known:
-            return unknown(SMALLEST, '-', 'not known yet: nothing is compared')
-        size = self.looks[-1].smallest
-        text = f'found within eight weeks in nine of ten cases; {ALARM_RATE}'
-        return quantity(SMALLEST, '-', (size, size, size), text)
+    def _bounds(self, health: Health) -> tuple[Quantity, Quantity]:
+        """Return the smallest loss that shows, and the preload where it alone fits a change."""
+        smallest = unknown(SMALLEST, '-', 'not known yet: nothing is compared')
+        if self.looks and self.looks[-1].is_known:
+            text = f'found within eight weeks in nine of ten cases; {ALARM_RATE}'
+            smallest = quantity(SMALLEST, '-', [self.looks[-1].smallest] * 3, text)
+        why = 'not known: drag alone does not tell it from other causes'
+        preload, sizes = unknown('preload', '-', why), [c.size for c in likely(health.causes)]
+        if [size.name for size in sizes] == ['preload']:
+            text = 'a bound by the loss of drag, which follows the preload'
+            preload = dataclasses.replace(sizes[0], evidence=text)
+        return smallest, preload
 
     def _notes(self) -> list[str]:
         """Return what is to be known of the inputs, the programme and the screw."""
@@ -268,43 +265,9 @@ def without_order(axis: str, start: int) -> Health:
     return _unknown(axis, start, reason)
 
 
-def _unknown(axis: str, stamp: int, reason: str) -> Health:
-    drag = unknown(DRAG, '-', reason)
-    return Health(
-        axis=axis,
-        stamp=stamp,
-        condition=Condition.UNKNOWN,
-        verdict=verdict_of(axis, Condition.UNKNOWN, drag, (), 0),
-        quantities=[drag],
-    )
-
-
-def _drag(look: Look) -> Quantity:
-    if not look.is_known:
-        return unknown(DRAG, '-', f'not known yet: {look.reason}')
-    text = f'the last {look.now} logs against {look.baseline} of the baseline'
-    return quantity(DRAG, '-', (look.change, look.low, look.high), text)
-
-
-def _preload(health: Health) -> Quantity:
-    """Return the share of the preload that is left, where its loss alone explains a change."""
-    told = likely(health.causes)
-    if [cause.size.name for cause in told] == ['preload']:
-        return dataclasses.replace(
-            told[0].size, evidence='a bound by the loss of drag, which follows the preload'
-        )
-    return unknown('preload', '-', 'not known: drag alone does not tell it from other causes')
-
-
-def recent_of(points: Sequence[Cell], today: int) -> list[Cell]:
-    """Return the cells of the last week, or of the last four where that has too few."""
-    week = [cell for cell in points if cell.first_day + cell.days > today - SHORT]
-    if len(week) >= FEWEST_CELLS:
-        return week
-    return [cell for cell in points if cell.first_day + cell.days > today - RECENT]
-
-
-def _shaft_notes(surface: Surface, recent: Sequence[Cell]) -> list[str]:
-    speed = max((abs(cell.speed) for cell in recent), default=0.0)
-    load = max((abs(opposed(cell)) for cell in recent), default=0.0)
-    return shaft_notes(surface.header, speed, load)
+def _unknown(axis: str, stamp: int, why: str | NDArray[Any]) -> Health:
+    """Return the health of an axis for a reason, or of cells without motion that counts."""
+    drag = unknown(DRAG, '-', why if isinstance(why, str) else missing_reason(why))
+    condition = Condition.UNKNOWN
+    verdict = verdict_of(axis, condition, drag, (), 0)
+    return Health(axis=axis, stamp=stamp, condition=condition, verdict=verdict, quantities=[drag])

@@ -12,22 +12,18 @@ import math
 
 from ballscrew_monitor.health.rows import DAY
 
-SPEED_RATIO = 1.2
-"""Width of a speed band: its upper limit over its lower one [-]; 1 rad/s is the middle of one."""
+SPEED_RATIO = 1.2  # upper over lower limit of a speed band [-]; 1 rad/s is the middle of one
 NO_LOAD, LOAD_RATIO = 50.0, 1.5
 """Load up to which the band is zero [N], and the width of a band beyond [-]."""
-LAST_LOAD = 24
-"""Number of the last load band; it has no upper limit."""
-UNKNOWN_LOAD = 99
-"""Band of motion under a load that is not known."""
+LAST_LOAD = 24  # number of the last load band; it has no upper limit
+UNKNOWN_LOAD = 99  # band of motion under a load that is not known
 SEVERITIES = (1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
 """Limits between classes of severity, [W/m2] or [Pa], see `spectrum`."""
 WEEK, MONTH = 7, 28
 """Periods [days]; both begin with day 0, so that each of them lies within one longer one."""
 DAYS_KEPT, WEEKS_KEPT = 60, 730
 """Age [days] of the last day of a week from which it is merged, and of a month's."""
-FIRST_DAY = 10957
-"""The first of January 2000 in days since 1970: a clock that says less was not set."""
+FIRST_DAY = 10957  # 1 January 2000 in days since 1970: a clock that says less was not set
 _SPEED_STEP, _LOAD_STEP = math.log(SPEED_RATIO), math.log(LOAD_RATIO)
 
 

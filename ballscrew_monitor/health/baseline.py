@@ -19,18 +19,14 @@ from ballscrew_monitor.health.rows import DAY
 from surrogate.files import InputError
 
 LEARNED = 'learned over the first logs'
-LEAP = 0.3
-"""Change everywhere [-] from which another screw is suspected."""
-
-Motion = Mapping[int, float]
-"""Time in motion [s] by day since 1970."""
+LEAP = 0.3  # change everywhere [-] from which another screw is suspected
 
 
 def motion_by_day(bins: Iterable[SpectrumBin]) -> dict[int, float]:
     """Return the time in motion [s] of each day, or first day of a longer period."""
     motion: dict[int, float] = {}
-    for one in bins:
-        motion[one.first_day] = motion.get(one.first_day, 0.0) + one.time
+    for part in bins:
+        motion[part.first_day] = motion.get(part.first_day, 0.0) + part.time
     return motion
 
 
@@ -71,12 +67,13 @@ def since_days(kept: KeptHealth, days: tuple[int, int] | None, screw: str) -> Ke
 
 
 def in_force(
-    baselines: Sequence[Baseline], motion: Motion, days: float = BASELINE_DAYS
+    baselines: Sequence[Baseline], motion: Mapping[int, float], days: float = BASELINE_DAYS
 ) -> Baseline:
     """
     Return the baseline that counts: the last one, with limits.
 
-    One without an end begins after a motion of `left_out` [s], and lasts some `days`.
+    One without an end begins after a motion of `left_out` [s], and lasts some `days`; `motion` is
+    the time in motion [s] by day since 1970.
 
     """
     last = baselines[-1] if baselines else Baseline(begin=FIRST_DAY * DAY, end=0, reason=LEARNED)

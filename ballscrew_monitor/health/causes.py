@@ -11,7 +11,7 @@ the axis itself had in its baseline. What the data do not tell apart is an answe
 from collections.abc import Callable, Sequence
 import dataclasses
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ballscrew_monitor.health.change import GroupChange, LEAST_GAIN, Marks
 from ballscrew_monitor.health.records import Cause, CauseCode, Quantity, quantity
@@ -19,27 +19,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-SHARED = 0.02
-"""Standard deviation of a change that all groups have in common, beside their cause [-]."""
-PATTERN_DOUBT = 0.4
-"""Doubt of a pattern at each group over the size of the change [-]."""
-PRELOAD_TILT = 0.3
-"""Doubt of the loss by less preload: its change with ln(speed), over the loss [-]."""
-EXCLUDED = 7.0
-"""Chi squared above that of the best cause from which one is excluded."""
-TOO_FAR = 9.0
-"""Chi squared over the number of groups above which no cause fits."""
+SHARED = 0.02  # standard deviation of a change that all groups share, beside their cause [-]
+PATTERN_DOUBT = 0.4  # doubt of a pattern at each group over the size of the change [-]
+PRELOAD_TILT = 0.3  # doubt of the loss by less preload: its change with ln(speed), over it [-]
+EXCLUDED = 7.0  # chi squared above that of the best cause from which one is excluded
+TOO_FAR = 9.0  # chi squared over the number of groups above which no cause fits
 FEWEST_GROUPS = 2
 LEAST_CARRIED, MOST_CARRIED = 0.5, 2.0
 """Mean change that a cause fits alone over the one that is reported, at least and at most [-]."""
-PRELOAD_EXPONENT = 1.2
-"""Exponent of the drag of a nut over its preload, at most."""
-NUT_SHARES = (0.33, 0.66)
-"""Share of the drag that follows the preload, usual range [-]."""
-FREED = 2.83
-"""Axial load over the preload at which one nut is free."""
-LOW_SPEED = 0.7
-"""Exponent with which the friction of a starved film falls over the speed."""
+PRELOAD_EXPONENT = 1.2  # of the drag of a nut over its preload, at most
+NUT_SHARES = (0.33, 0.66)  # share of the drag that follows the preload, usual range [-]
+FREED = 2.83  # axial load over the preload at which one nut is free
+LOW_SPEED = 0.7  # exponent with which the friction of a starved film falls over the speed
 
 
 class Candidate(NamedTuple):
@@ -49,12 +40,7 @@ class Candidate(NamedTuple):
     sign: int
     pattern: Callable[[GroupChange, float], Array]
     text: str
-    otherwise: str
-
-    @property
-    def unseen(self) -> str:
-        """Return why the cause does not fit."""
-        return f'{self.otherwise}, and that is not what is seen'
+    unseen: str
 
 
 def alike(groups: GroupChange, preload: float) -> Array:
@@ -88,48 +74,50 @@ def of_viscosity(groups: GroupChange, preload: float) -> Array:
     return np.asarray(np.polyval(np.polyder(bend), speed))
 
 
+UNSEEN = ', and that is not what is seen'
 CANDIDATES = (
     Candidate(
         CauseCode.PRELOAD_LOST,
         -1,
         of_preload,
         'preload is lost ({least:.0f} % of it or more, if the nut is the cause)',
-        'less preload lowers the friction at all speeds alike',
+        'less preload lowers the friction at all speeds alike' + UNSEEN,
     ),
     Candidate(
         CauseCode.TORQUE_CONSTANT,
         0,
         alike,
         'the torque constant is another one ({share:+.0f} % of torque)',
-        'another torque constant changes all torques by one factor, over the load as well',
+        'another torque constant changes all torques by one factor, over the load as well'
+        + UNSEEN,
     ),
     Candidate(
         CauseCode.OIL_THINNER,
         -1,
         of_viscosity,
         'the oil is thinner, or warmer than measured: {share:.0f} % of its viscosity',
-        'a thinner oil moves the curve of friction over speed',
+        'a thinner oil moves the curve of friction over speed' + UNSEEN,
     ),
     Candidate(
         CauseCode.OIL_THICKER,
         1,
         of_viscosity,
         'the oil is thicker, or colder than measured: {share:.0f} % of its viscosity',
-        'a thicker oil moves the curve of friction over speed',
+        'a thicker oil moves the curve of friction over speed' + UNSEEN,
     ),
     Candidate(
         CauseCode.FILM_STARVED,
         1,
         low_speed,
         'the film is starved: friction at low speed is {share:+.0f} %',
-        'a starved film raises the friction at low speed',
+        'a starved film raises the friction at low speed' + UNSEEN,
     ),
     Candidate(
         CauseCode.WIPER,
         0,
         constant,
         'the drag of a wiper, seal, guideway or bearing has changed ({size:+.2g} N m)',
-        'a wiper or a guideway has one torque at all speeds',
+        'a wiper or a guideway has one torque at all speeds' + UNSEEN,
     ),
 )
 """All causes of a change of the friction: the one table of them."""
@@ -165,49 +153,54 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
     """
     if len(groups.change) < FEWEST_GROUPS:
         return []
-    size = len(groups.change)
-    covariance = SHARED**2 + np.diag(
-        groups.deviation**2 + (PATTERN_DOUBT * np.abs(groups.change)) ** 2
-    )
+    scatter = groups.deviation**2 + (PATTERN_DOUBT * np.abs(groups.change)) ** 2
+    covariance = SHARED**2 + np.diag(scatter)
     tilt = PRELOAD_TILT * reported * np.log(groups.speed / np.exp(np.log(groups.speed).mean()))
-    doubts = {CauseCode.PRELOAD_LOST: covariance + np.outer(tilt, tilt)}
-    fits = [
-        _fit(one, groups, np.asarray(np.linalg.inv(doubts.get(one.code, covariance))), preload)
-        for one in CANDIDATES
-    ]
-    reasons = [_objection(fit, marks, reported, size) for fit in fits]
-    least = min(
-        (fit.chi for fit, why in zip(fits, reasons, strict=True) if not why), default=math.inf
-    )
-    reasons = [
-        why or (fit.candidate.unseen if fit.chi - least > EXCLUDED else '')
-        for fit, why in zip(fits, reasons, strict=True)
-    ]
-    codes = [fit.candidate.code for fit in fits]
-    played = marks.lost_motion and not reasons[codes.index(CauseCode.PRELOAD_LOST)]
+    tilted = covariance + np.outer(tilt, tilt)
+    fits = {
+        candidate.code: _fit(candidate, groups, tilted if at == 0 else covariance, preload)
+        for at, candidate in enumerate(CANDIDATES)  # the first is the preload
+    }
+    why = {code: _objection(fit, marks, reported, len(scatter)) for code, fit in fits.items()}
+    least = min((fit.chi for code, fit in fits.items() if not why[code]), default=math.inf)
+    for code, fit in fits.items():
+        if not why[code] and fit.chi - least > EXCLUDED:
+            why[code] = fit.candidate.unseen
+    played = marks.lost_motion and not why[CauseCode.PRELOAD_LOST]
     if played:
-        reasons = [
-            why or ('' if code in WITH_PLAY else WITHOUT_PLAY)
-            for code, why in zip(codes, reasons, strict=True)
-        ]
-    causes = [
-        _cause(fit, why, groups, reported, least, played=played)
-        for fit, why in zip(fits, reasons, strict=True)
-    ]
-    total = sum(cause.weight for cause in causes) or 1.0
-    causes = [dataclasses.replace(cause, weight=cause.weight / total) for cause in causes]
-    return sorted(
-        causes,
-        key=lambda cause: (
-            cause.excluded,
-            played and cause.code is not CauseCode.PRELOAD_LOST,
-            -cause.weight,
-        ),
-    )
+        why = {code: text or WITHOUT_PLAY * (code not in WITH_PLAY) for code, text in why.items()}
+    weight = {
+        code: 0.0 if why[code] else math.exp(-0.5 * (fit.chi - least))
+        for code, fit in fits.items()
+    }
+    total = sum(weight.values()) or 1.0
+    causes = []
+    for code, fit in fits.items():
+        # A cause that stands has the size at which it alone makes the reported change.
+        size = _size(fit if why[code] else fit._replace(size=reported / fit.share), groups)
+        text = fit.candidate.text
+        if played and code is CauseCode.WIPER:
+            text, size = BEARING_PLAY, dataclasses.replace(size, name=BEARING_DRAG)
+        numbers = {'least': 100.0 * (1.0 - size.high), 'share': 100.0 * size.value}
+        causes.append(
+            Cause(
+                code=code,
+                size=size,
+                weight=weight[code] / total,
+                excluded=bool(why[code]),
+                text=why[code] or text.format(size=size.value, **numbers),
+            )
+        )
+
+    def order(cause: Cause) -> tuple[bool, bool, float]:
+        second = played and cause.code is not CauseCode.PRELOAD_LOST
+        return cause.excluded, second, -cause.weight
+
+    return sorted(causes, key=order)
 
 
-def _fit(candidate: Candidate, groups: GroupChange, inverse: NDArray[Any], preload: float) -> Fit:
-    pattern = candidate.pattern(groups, preload)
+def _fit(candidate: Candidate, groups: GroupChange, covariance: Array, preload: float) -> Fit:
+    pattern, inverse = candidate.pattern(groups, preload), np.linalg.inv(covariance)
     normal = float(pattern @ inverse @ pattern)
     if normal <= 0.0:
         return Fit(candidate, 0.0, math.inf, math.inf, 0.0)
@@ -222,40 +215,20 @@ def _fit(candidate: Candidate, groups: GroupChange, inverse: NDArray[Any], prelo
 
 def _objection(fit: Fit, marks: Marks, reported: float, groups: int) -> str:
     """Return why a cause is excluded whatever the others are, or ''."""
-    candidate = fit.candidate
+    candidate, gain = fit.candidate, marks.gain
     if fit.size == 0.0 or not LEAST_CARRIED <= fit.size * fit.share / reported <= MOST_CARRIED:
         return candidate.unseen
     if fit.chi > TOO_FAR * groups:
         return candidate.unseen
-    gain = marks.gain
     if math.isfinite(gain.value):
-        moved = gain.is_proven(LEAST_GAIN)
-        follows = abs(gain.value - reported) < max(0.5 * abs(reported), 2.0 * gain.deviation)
+        near = max(0.5 * abs(reported), 2.0 * gain.deviation)
+        follows = gain.is_proven(LEAST_GAIN) and abs(gain.value - reported) < near
         of_motor = candidate.code is CauseCode.TORQUE_CONSTANT
-        if of_motor and not (moved and follows):
+        if of_motor and not follows:
             return 'the torque over the measured load has not changed, as with another constant'
-        if moved and follows and not of_motor:
+        if follows and not of_motor:
             return 'the torque over the measured load has changed as much, as no friction does'
     return ''
-
-
-def _cause(
-    fit: Fit, why: str, groups: GroupChange, reported: float, least: float, *, played: bool
-) -> Cause:
-    candidate = fit.candidate
-    # A cause that stands has the size at which it alone makes the reported change.
-    size = _size(fit if why else fit._replace(size=reported / fit.share), groups)
-    text = candidate.text
-    if played and candidate.pattern is constant:
-        text, size = BEARING_PLAY, dataclasses.replace(size, name=BEARING_DRAG)
-    return Cause(
-        code=candidate.code,
-        size=size,
-        weight=0.0 if why else math.exp(-0.5 * (fit.chi - least)),
-        excluded=bool(why),
-        text=why
-        or text.format(least=100.0 * (1.0 - size.high), size=size.value, share=100.0 * size.value),
-    )
 
 
 def _size(fit: Fit, groups: GroupChange) -> Quantity:

@@ -17,12 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-OWN_SCATTER = 0.006
-"""Least scatter of a group of a log beside that of the log [-]."""
-SIGMAS = 4.5
-"""Standard deviations from which a mark of an input counts."""
-LEAST_OFFSET, LEAST_GAIN = 0.03, 0.04
-"""Least offset over the friction, and least change of a gain, that counts [-]."""
+OWN_SCATTER = 0.006  # least scatter of a group of a log beside that of the log [-]
+SIGMAS = 4.5  # standard deviations from which a mark of an input counts
+LEAST_OFFSET, LEAST_GAIN = 0.03, 0.04  # least offset over the friction, least change of a gain [-]
 
 
 class GroupChange(NamedTuple):
@@ -74,29 +71,28 @@ class Marks(NamedTuple):
 
 def changes_of(history: History, look: Look) -> GroupChange:
     """Return the change of each group of a history, by the logs of baseline and now of a look."""
-    effects = effects_of(history)
     before, now = parts_of(history, look)
-    values = np.log(np.where(history.weight > 0.0, history.friction, np.nan))
     slope = look.slope if history.warm else 0.0
-    values = values - slope * (history.temperature - np.nanmean(history.temperature))
-    seen = np.isfinite(values)
+    friction = np.log(np.where(history.weight > 0.0, history.friction, np.nan))
+    friction = friction - slope * (history.temperature - np.nanmean(history.temperature))
+    seen = np.isfinite(friction)
     both = seen[before].any(axis=0) & seen[now].any(axis=0)
-    rest = effects.rest[:, both]
+    rest = effects_of(history).rest[:, both]
     free = max(int(np.isfinite(rest).sum() - both.sum() - len(history.start)), 1)
     own = max(math.sqrt(float(np.nansum(rest**2)) / free), OWN_SCATTER)
-    counts = [1.0 / seen[part][:, both].sum(axis=0) for part in (before, now)]
+    counts = [seen[part][:, both].sum(axis=0) for part in (before, now)]
+
+    def mean(values: Array, part: NDArray[np.bool_]) -> Array:
+        return np.asarray(np.nanmean(values[part][:, both], axis=0))
+
     return GroupChange(
-        change=_mean(values[now][:, both]) - _mean(values[before][:, both]),
-        deviation=own * np.sqrt(counts[0] + counts[1]),
-        friction=np.exp(_mean(values[before][:, both])),
-        speed=_mean(history.speed[before][:, both]),
-        load=_mean(history.load[before][:, both]),
+        change=mean(friction, now) - mean(friction, before),
+        deviation=own * np.sqrt(1.0 / counts[0] + 1.0 / counts[1]),
+        friction=np.exp(mean(friction, before)),
+        speed=mean(history.speed, before),
+        load=mean(history.load, before),
         time=history.weight[now][:, both].sum(axis=0),
     )
-
-
-def _mean(values: Array) -> Array:
-    return np.asarray(np.nanmean(values, axis=0))
 
 
 def parts_of(history: History, look: Look) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

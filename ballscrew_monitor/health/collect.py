@@ -30,8 +30,7 @@ from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
 ROW, STRETCH = dtype_of(Row), dtype_of(Stretch)
-ROOM = 256
-"""Stretches that are handed over at a time."""
+ROOM = 256  # stretches that are handed over at a time
 
 
 class Collected(NamedTuple):
@@ -45,10 +44,9 @@ class Collector:
     """Collects what the health of one axis rests on."""
 
     def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
-        """Begin with nothing collected."""
         self._settings = settings or GatherSettings()
         self._memory, self._sums = GatherMemory(), SpectrumMemory()
-        self._found, self._stretch = Found(), Stretch()
+        self._point, self._stretch = Found(), Stretch()
         self._run = Recogniser(self._settings.free_load)
         self.use_surface(surface)
 
@@ -61,12 +59,12 @@ class Collector:
     def take(self, row: Any) -> Collected | None:
         """Take one row of the judgement; return what has ended with it, None for nothing."""
         ended = step(self._settings, self._memory, row, self._stretch)
-        counted = count(self._tables, self._spectrum, self._sums, row, self._found)
+        counted = count(self._tables, self._spectrum, self._sums, row, self._point)
         if counted and not ended:
             return None
         bins = [] if counted else take_bins(self._sums)
         if not counted:
-            count(self._tables, self._spectrum, self._sums, row, self._found)
+            count(self._tables, self._spectrum, self._sums, row, self._point)
         return Collected(self._run.take(self._taken(ended)), bins)
 
     def _taken(self, ended: bool) -> list[Stretch]:
@@ -77,30 +75,21 @@ class Collector:
         return [stretch]
 
     def take_many(self, rows: NDArray[Any]) -> Collected:
-        """Take rows, an array of ROW, compiled."""
-        return Collected(self._run.take(self._gather_many(rows)), self._count_many(rows))
-
-    def _gather_many(self, rows: Any) -> list[Stretch]:
+        """Take rows, an array of ROW, compiled; raises ImportError without numba."""
         settings, memory = as_array(self._settings), as_array(self._memory)
-        made = np.empty(ROOM, dtype=STRETCH)
-        found: list[Stretch] = []
-        at = 0
+        room, stretches, at = np.empty(ROOM, dtype=STRETCH), list[Stretch](), 0
         while at < len(rows):
-            at, number = compiled_step()(settings, memory, rows, made, at, ROOM)
-            found += [from_array(Stretch, one) for one in made[:number]]
+            at, number = _compiled(step_many)(settings, memory, rows, room, at, ROOM)
+            stretches += [from_array(Stretch, stretch) for stretch in room[:number]]
         self._memory = from_array(GatherMemory, memory[0])
-        return found
-
-    def _count_many(self, rows: Any) -> list[SpectrumBin]:
-        tables, settings = self._surface.array_tables, as_array(self._spectrum)
-        found, at = as_array(self._found), 0
-        bins: list[SpectrumBin] = []
+        tables, spectrum = self._surface.array_tables, as_array(self._spectrum)
+        point, bins, at = as_array(self._point), list[SpectrumBin](), 0
         while True:
             sums = as_array(self._sums)
-            at = compiled_count()(tables, settings, sums, rows, found, at)
+            at = _compiled(count_many)(tables, spectrum, sums, rows, point, at)
             self._sums = from_array(SpectrumMemory, sums[0])
             if at == len(rows):
-                return bins
+                return Collected(self._run.take(stretches), bins)
             bins += take_bins(self._sums)
 
     def finish(self, *, rows_end: bool = True) -> Collected:
@@ -110,12 +99,12 @@ class Collector:
         `rows_end` ends the stretch as well.
 
         """
-        found: list[Stretch] = []
+        stretches: list[Stretch] = []
         if rows_end:
             ended = finish(self._settings, self._memory, self._stretch)
-            found = self._run.take(self._taken(ended)) + self._run.finish()
-            found += self._taken(finish_rest(self._memory, self._stretch))
-        return Collected(found, take_bins(self._sums))
+            stretches = self._run.take(self._taken(ended)) + self._run.finish()
+            stretches += self._taken(finish_rest(self._memory, self._stretch))
+        return Collected(stretches, take_bins(self._sums))
 
 
 def prepare() -> None:
@@ -123,13 +112,4 @@ def prepare() -> None:
     Collector(Surface.load(shipped_surface())).take_many(np.empty(0, ROW))
 
 
-@functools.cache
-def compiled_step() -> Any:
-    """Return `gather.step_many` compiled; raises ImportError without numba."""
-    return compiled(step_many)
-
-
-@functools.cache
-def compiled_count() -> Any:
-    """Return `spectrum.count_many` compiled; raises ImportError without numba."""
-    return compiled(count_many)
+_compiled = functools.cache(compiled)

@@ -28,36 +28,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-BASELINE_DAYS = 91.0
-"""Days of the first logs that are the baseline."""
-FEWEST_LOGS = 3
-"""Logs of a baseline, and of the logs that are compared where they come monthly: two."""
-NOW = 4
-"""Logs that count as now."""
-SPARSE = 20.0
-"""Days between logs from which two of them count as now."""
-EIGHT_WEEKS = 56.0
-"""Days within which a loss is to be found, and after which older logs are merged to weeks."""
+BASELINE_DAYS = 91.0  # days of the first logs that are the baseline
+FEWEST_LOGS = 3  # of a baseline
+NOW = 4  # logs that count as now, two where they come monthly
+SPARSE = 20.0  # days between logs from which two of them count as now
+EIGHT_WEEKS = 56.0  # days until a loss is to be found, and after which logs are merged to weeks
 A_DAY, MERGED, MERGED_OLD, FEW = 0.75, 2.5, 6.0, 60
 """
 Days within which logs count as one: of up to 60 logs those of a day, else those of some days, and
 of a week where they are older than eight.
 
 """
-DOUBT = 0.05
-"""Probability at which a change is worse: that nothing lasting has come beyond the tolerance."""
-RUNNING_IN = 0.1
-"""Loss that a new screw may have while it runs in, in the days of the baseline [-]."""
-SLIGHT_99 = 2.575829
-NARROW = 0.08
-"""Half width of an interval that holds zero, up to which an axis is normal [-]."""
-RECOVERY = 56.0
-"""Days within the tolerance after which a latched condition ends."""
-NORMAL_95 = 1.959964
-DOUBT_SIGMAS, MISSED_SIGMAS = 1.645, 1.282
-"""Normal quantiles of the doubt, and of what nine of ten cases have."""
-UNFORESEEN = 1.35
-"""What eight weeks to come have of doubt beyond the last ones [-], as measured."""
+DOUBT = 0.05  # probability at which a change is worse: nothing lasting beyond the tolerance
+RUNNING_IN = 0.1  # loss that a new screw may have in the days of the baseline [-]
+SLIGHT_99, NORMAL_95 = 2.575829, 1.959964  # quantiles of two sides
+NARROW = 0.08  # half width of an interval that holds zero, up to which an axis is normal [-]
+RECOVERY = 56.0  # days within the tolerance after which a latched condition ends
+DOUBT_SIGMAS, MISSED_SIGMAS = 1.645, 1.282  # quantiles of the doubt, and of nine of ten cases
+UNFORESEEN = 1.35  # doubt of eight weeks to come over that of the last ones [-], as measured
 
 
 class Look(NamedTuple):
@@ -118,42 +106,39 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior
         needed = FEWEST_LOGS + 2
         reason = f'{min(len(logs.time), needed)} of {needed} logs'
         return Look(index, float(time[-1]), reason=reason)
-    found = estimate(logs, baseline, now, warm=history.warm, prior=prior)
+    change = estimate(logs, baseline, now, warm=history.warm, prior=prior)
     first = [int(part[0]) for part in bins]
-    sign = -1 if found.lasts.value < 0.0 else 1
+    sign = -1 if change.lasts.value < 0.0 else 1
     provisional = float(time[-1] - time[first[0]]) <= baseline_days
     usual = RUNNING_IN if provisional and sign < 0 else TOLERANCE
-    doubt = max(found.lasts.within(usual, sign), found.unproven)
-    is_worse = doubt < DOUBT and (now.sum() > 2 or _both_beyond(logs, baseline, found, sign))
-    reach = NORMAL_95 * found.deviation
-    proven = abs(found.change) > SLIGHT_99 * found.deviation
+    doubt = max(change.lasts.within(usual, sign), change.unproven)
+    is_worse = doubt < DOUBT
+    if is_worse and now.sum() <= 2:  # one run may be odd: both lie beyond the tolerance
+        effects = logs.effect - change.slope * logs.warmth
+        apart = effects[-2:] - float(np.mean(effects[baseline]))
+        is_worse = bool((sign * apart > TOLERANCE).all())
+    reach = NORMAL_95 * change.deviation
+    proven = abs(change.change) > SLIGHT_99 * change.deviation
     return Look(
         log=index,
         time=float(time[-1]),
-        change=math.expm1(found.change),
-        low=math.expm1(found.change - reach),
-        high=math.expm1(found.change + reach),
+        change=math.expm1(change.change),
+        low=math.expm1(change.change - reach),
+        high=math.expm1(change.change + reach),
         raised=sign if is_worse else 0,
-        shifted=int(math.copysign(proven, found.change)),
+        shifted=int(math.copysign(proven, change.change)),
         doubt=doubt,
-        smallest=smallest_loss(found, logs.time),
-        slope=found.slope,
+        smallest=smallest_loss(change, logs.time),
+        slope=change.slope,
         baseline=int(sizes[baseline].sum()),
         now=int(sizes[now].sum()),
         baseline_end=float(time[bins[int(baseline.sum()) - 1][-1]]),
         now_begin=float(time[first[int(now.argmax())]]),
-        onset=first[found.onset] if found.onset >= 0 else first[int(now.argmax())],
+        onset=first[change.onset if change.onset >= 0 else int(now.argmax())],
     )
 
 
-def _both_beyond(logs: Logs, baseline: NDArray[np.bool_], found: Estimate, sign: int) -> bool:
-    """Return True if both logs that are now lie beyond the tolerance: one run may be odd."""
-    values = logs.effect - found.slope * logs.warmth
-    apart = values[-2:] - float(np.mean(values[baseline]))
-    return bool((sign * apart > TOLERANCE).all())
-
-
-def smallest_loss(found: Estimate, time: Array) -> float:
+def smallest_loss(change: Estimate, time: Array) -> float:
     """
     Return the loss [-] that would be worse within eight weeks in nine of ten cases.
 
@@ -161,10 +146,10 @@ def smallest_loss(found: Estimate, time: Array) -> float:
     the logs.
 
     """
-    if not len(found.recent):
+    if not len(change.recent):
         return math.nan
-    ago = np.abs(time[-1] - time[FIRST_CHANGE:][: len(found.recent)] - EIGHT_WEEKS)
-    deviation = float(found.recent[int(ago.argmin())])
+    ago = np.abs(time[-1] - time[FIRST_CHANGE:][: len(change.recent)] - EIGHT_WEEKS)
+    deviation = float(change.recent[int(ago.argmin())])
     odds = math.log((1.0 - DOUBT) / DOUBT / (CHANGE_RATE * EIGHT_WEEKS))
     proven = deviation * math.sqrt(2.0 * odds + 2.0 * math.log(max(CHANGE / deviation, 1.0)))
     size = max(proven, TOLERANCE + DOUBT_SIGMAS * deviation) + MISSED_SIGMAS * deviation
@@ -225,7 +210,7 @@ class Latched(NamedTuple):
     since: int
 
 
-def latched(seen: Iterable[Look]) -> list[Latched]:
+def latched(course: Iterable[Look]) -> list[Latched]:
     """
     Return the condition after each look.
 
@@ -233,28 +218,25 @@ def latched(seen: Iterable[Look]) -> list[Latched]:
     proven.
 
     """
-    course, state, since, left = [], Condition.UNKNOWN, -1, math.nan
-    for here in seen:
+    states, state, since, left = [], Condition.UNKNOWN, -1, math.nan
+    for here in course:
+        narrow = 0.5 * (here.high - here.low) <= NARROW
+        unchanged = Condition.NORMAL if narrow else Condition.UNKNOWN
+        worse = state is Condition.WORSE
         if not here.is_known:
-            course.append(Latched(state if since >= 0 else Condition.UNKNOWN, since))
-            continue
-        if here.raised:
-            since = here.onset if state is not Condition.WORSE else since
+            state = state if since >= 0 else Condition.UNKNOWN
+        elif here.raised:
+            since = since if worse else here.onset
             state, left = Condition.WORSE, math.nan
-        elif state is Condition.WORSE or (since >= 0 and not here.shifted):
-            inside = abs(here.change) <= TOLERANCE if state is Condition.WORSE else True
+        elif worse or (since >= 0 and not here.shifted):
+            inside = abs(here.change) <= TOLERANCE or not worse
             left = (here.time if math.isnan(left) else left) if inside else math.nan
             if here.time - left >= RECOVERY:
-                state, since, left = _unlatched(here), -1, math.nan
+                state, since, left = unchanged, -1, math.nan
         elif here.shifted:
             since = here.onset if since < 0 else since
             state, left = Condition.SLIGHTLY_CHANGED, math.nan
         else:
-            state = _unlatched(here)
-        course.append(Latched(state, since))
-    return course
-
-
-def _unlatched(here: Look) -> Condition:
-    half = 0.5 * (here.high - here.low)
-    return Condition.NORMAL if half <= NARROW else Condition.UNKNOWN
+            state = unchanged
+        states.append(Latched(state, since))
+    return states

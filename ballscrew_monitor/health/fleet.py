@@ -11,7 +11,6 @@ level in the order of their first logs: neither a later log nor a further axis w
 
 from collections.abc import Mapping, Sequence
 import dataclasses
-import itertools
 import math
 from typing import TypeVar
 
@@ -25,13 +24,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Key = TypeVar('Key')
-LEVEL = 0.1
-"""Share of false alarms among the axes that are told worse in a year, at most in the mean [-]."""
-ALARM = 0.02
-"""Probability that an axis without a change alarms by itself within a year, at most [-]."""
+LEVEL = 0.1  # share of false alarms among the axes told worse in a year, at most in the mean [-]
+ALARM = 0.02  # probability that an axis without a change alarms by itself in a year, at most [-]
 YEAR, WEEK = 365 * DAY, 7 * DAY
-SHARES = 2.10974
-"""Sum of 1/(n ln(n)^2) over all n from 2 on."""
+SHARES = 2.10974  # sum of 1/(n ln(n)^2) over all n from 2 on
 
 
 def bayes_factor(stamps: NDArray[np.int64], doubt: Array) -> Array:
@@ -91,21 +87,15 @@ def confirmed(
     first, last = (int(part) for part in (stamps[0][0], max(part[-1] for part in stamps)))
     share = shares(len(stamps))
     for year in range(first, last + 1, YEAR):
-        parts = [_within(*axis, year) for axis in zip(stamps, factor, begins, strict=True)]
+        axes = []  # looks within the year, with their e-values
+        for times, factors, begin in zip(stamps, factor, begins, strict=True):
+            own = (times >= year) & (times < year + YEAR)
+            axes.append((times[own], evidence(times[own], factors[own], begin[own])))
         for week in range(year, min(year + YEAR, last + 1), WEEK):
-            known = [np.searchsorted(times, week + WEEK) for times, _ in parts]
-            values = [part[at - 1] if at else 0.0 for at, (_, part) in zip(known, parts)]
-            alarms = told(np.array(values), share)
+            known = [(np.searchsorted(times, week + WEEK), values) for times, values in axes]
+            alarms = told(np.array([values[at - 1] if at else 0.0 for at, values in known]), share)
             since = np.where(alarms, np.minimum(since, week), since)
     return np.asarray(since)
-
-
-def _within(
-    stamps: NDArray[np.int64], factor: Array, begins: NDArray[np.bool_], year: int
-) -> tuple[NDArray[np.int64], Array]:
-    """Return the looks within the year that begins at a stamp [ns], with their e-values."""
-    own = (stamps >= year) & (stamps < year + YEAR)
-    return stamps[own], evidence(stamps[own], factor[own], begins[own])
 
 
 def controlled(courses: Mapping[Key, Sequence[Health]]) -> tuple[dict[Key, list[Health]], str]:
@@ -119,21 +109,27 @@ def controlled(courses: Mapping[Key, Sequence[Health]]) -> tuple[dict[Key, list[
     order = sorted(known, key=lambda key: (known[key][0].stamp, str(key)))
     if len(order) < 2:
         return {key: list(course) for key, course in courses.items()}, ''
-    stamps = [np.array([health.stamp for health in known[key]]) for key in order]
-    doubts = [np.array([health.doubt for health in known[key]]) for key in order]
-    factors = [bayes_factor(*axis) for axis in zip(stamps, doubts, strict=True)]
-    since = confirmed(stamps, factors, [np.array(_begins(known[key])) for key in order])
-    dates = dict(zip(order, since.tolist(), strict=True))
+    stamps, factors, begins = [], [], []
+    for key in order:
+        stamps.append(np.array([health.stamp for health in known[key]]))
+        doubt = np.array([health.doubt for health in known[key]])
+        factors.append(bayes_factor(stamps[-1], doubt))
+        worse = np.array([health.condition is Condition.WORSE for health in known[key]])
+        begins.append(worse & ~np.concatenate([[False], worse[:-1]]))
+    dates = dict(zip(order, confirmed(stamps, factors, begins).tolist(), strict=True))
     lowered = {
         key: [_lowered(health) if health.stamp < dates[key] else health for health in course]
         for key, course in known.items()
     }
-    return lowered, _text(known, lowered)
-
-
-def _begins(course: Sequence[Health]) -> list[bool]:
-    worse = [False, *(health.condition is Condition.WORSE for health in course)]
-    return [now and not before for before, now in itertools.pairwise(worse)]
+    alone, together = (
+        sum(course[-1].condition is Condition.WORSE for course in part.values())
+        for part in (known, lowered)
+    )
+    return lowered, (
+        f'{len(known)} axes, {together} of them worse: in the mean at most {100 * LEVEL:.0f} % of '
+        f'such are so by chance; by its own logs alone each, {alone} would be worse, with '
+        f'at most {ALARM * len(known):.2g} false alarms a year'
+    )
 
 
 def _lowered(health: Health) -> Health:
@@ -142,21 +138,6 @@ def _lowered(health: Health) -> Health:
         return health
     condition, drag = Condition.SLIGHTLY_CHANGED, health.quantity(DRAG)
     note = 'worse by its own logs; beside the other axes it needs more of them to be told so'
-    return dataclasses.replace(
-        health,
-        condition=condition,
-        verdict=verdict_of(health.axis, condition, drag, health.causes, health.since),
-        notes=[*health.notes, note],
-    )
-
-
-def _text(own: Mapping[Key, Sequence[Health]], fleet: Mapping[Key, Sequence[Health]]) -> str:
-    alone, worse = (
-        sum(course[-1].condition is Condition.WORSE for course in courses.values())
-        for courses in (own, fleet)
-    )
-    return (
-        f'{len(own)} axes, {worse} of them worse: in the mean at most {100 * LEVEL:.0f} % of such '
-        f'are so by chance; by its own logs alone each, {alone} would be worse, with '
-        f'at most {ALARM * len(own):.2g} false alarms a year'
-    )
+    verdict = verdict_of(health.axis, condition, drag, health.causes, health.since)
+    notes = [*health.notes, note]
+    return dataclasses.replace(health, condition=condition, verdict=verdict, notes=notes)

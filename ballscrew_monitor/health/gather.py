@@ -33,18 +33,13 @@ RIPPLES, FIRST_RIPPLE, RIPPLE_STEP = 4.0, 0.003, 1.03
 """Ripples of a block mean that are steady, the first ripple [-], and how it follows the median."""
 LOAD_SHARE, LOAD_WIDTH = 0.2, 100.0
 """Distance of a block from the mean load: over that mean [-], or in [N] if this is more."""
-TEMPERATURE_WIDTH = 1.0
-"""Distance of a block from the mean temperature [K]."""
+TEMPERATURE_WIDTH = 1.0  # distance of a block from the mean temperature [K]
 BLOCK, SETTLING = SECOND // 10, SECOND // 5
-SHORTEST, LONGEST = SECOND // 4, 10 * SECOND
-"""Times of a stretch [ns]; a longer motion gives several."""
+SHORTEST, LONGEST = SECOND // 4, 10 * SECOND  # of a stretch [ns]; a longer motion has several
 FEWEST_SAMPLES = 3
-LONGEST_REST = 600 * SECOND
-"""Time of rest that is handed over as one stretch [ns]."""
-PERIODS, LARGEST_GAP = 5, 2 * SECOND
-"""Sample periods that a gap may last, and the longest of such gaps [ns]."""
-FOLLOWING = 16
-"""Samples over which the sample period follows a slower rate."""
+LONGEST_REST = 600 * SECOND  # time of rest that is handed over as one stretch [ns]
+PERIODS, LARGEST_GAP = 5, 2 * SECOND  # sample periods of a gap, and the longest such gap [ns]
+FOLLOWING = 16  # samples over which the sample period follows a slower rate
 SUMS = 4
 SPEED, LOAD, TEMPERATURE, TORQUE = range(SUMS)
 MEASURED_LOAD, DERIVED_LOAD, FREE_LOAD = map(int, LoadSource)
@@ -98,69 +93,73 @@ class GatherMemory:
     rest_torque: float = 0.0  # torque times time [N m ns]
 
 
-def step(settings: Any, memory: Any, row: Any, made: Any) -> bool:
+def step(settings: Any, memory: Any, row: Any, stretch: Any) -> bool:
     """
-    Take a row; return True if a stretch has ended, which then is in `made`.
+    Take a row; return True if a stretch has ended, which then is in `stretch`.
 
     A standstill, another direction or source and a gap end a stretch. A row without torque, or
     whose load or temperature is an input that is missing, is left out.
 
     """
     if not moves(row):
-        ended = finish(settings, memory, made)
+        ended = finish(settings, memory, stretch)
         _rest(settings, memory, row)
         return ended
     memory.rest_stamp = 0
     if not has_torque(row) or not _is_known(row):
         return False
     if memory.rest_time >= LONGEST_REST and memory.block_samples == 0:
-        return _end_rest(memory, made)
+        return _end_rest(memory, stretch)
     ended = False
     if memory.known:
         span = row.stamp - memory.stamp
         if span == 0:
             return False
-        if not 0 < span <= _longest_gap(settings, memory) or _is_other(memory, row):
-            ended = finish(settings, memory, made)
+        longest = max(settings.max_gap, min(PERIODS * memory.period, LARGEST_GAP))
+        if not 0 < span <= longest or _is_other(memory, row):
+            ended = finish(settings, memory, stretch)
         else:
             _follow_ripple(memory, row.speed)
-        _follow_period(memory, span)
+        if 0 < span <= LARGEST_GAP:  # the period follows at once if it is shorter, else slowly
+            slower = memory.period > 0 and span >= memory.period
+            change = span - memory.period
+            memory.period += change // FOLLOWING if slower else change
     memory.speed = row.speed
     if memory.block_samples > 0 and row.stamp - memory.block_start >= BLOCK:
-        ended = _end_block(settings, memory, made)
+        ended = _end_block(settings, memory, stretch)
     _add(memory, row)
     return ended
 
 
 def step_many(
-    settings: Any, memory: Any, rows: Any, made: Any, begin: int, room: int
+    settings: Any, memory: Any, rows: Any, stretches: Any, begin: int, room: int
 ) -> tuple[int, int]:
     """
     Take rows from `begin` on; return the place after the last one, and the number of stretches.
 
-    `settings` and `memory` are arrays of one record, `made` has `room` for stretches.
+    `settings` and `memory` are arrays of one record, `stretches` have `room` for so many.
 
     """
     count = 0
     for at in range(begin, len(rows)):
         if count == room:
             return at, count
-        if step(settings[0], memory[0], rows[at], made[count]):
+        if step(settings[0], memory[0], rows[at], stretches[count]):
             count += 1
     return len(rows), count
 
 
-def finish(settings: Any, memory: Any, made: Any) -> bool:
-    """End the motion so far; return True if it is a stretch, which then is in `made`."""
-    ended = _end_stretch(settings, memory, made)
+def finish(settings: Any, memory: Any, stretch: Any) -> bool:
+    """End the motion so far; return True if it is a stretch, which then is in `stretch`."""
+    ended = _end_stretch(settings, memory, stretch)
     memory.known = False
     memory.block_samples = memory.run_samples = memory.pending_samples = 0
     return ended
 
 
-def finish_rest(memory: Any, made: Any) -> bool:
-    """End the rest so far; return True if it is a stretch, which then is in `made`."""
-    return memory.rest_time >= SHORTEST and _end_rest(memory, made)
+def finish_rest(memory: Any, stretch: Any) -> bool:
+    """End the rest so far; return True if it is a stretch, which then is in `stretch`."""
+    return memory.rest_time >= SHORTEST and _end_rest(memory, stretch)
 
 
 def _is_known(row: Any) -> bool:
@@ -184,12 +183,12 @@ def _rest(settings: Any, memory: Any, row: Any) -> None:
     memory.rest_stamp = row.stamp
 
 
-def _end_rest(memory: Any, made: Any) -> bool:
-    made.start, made.duration = memory.rest_start, memory.rest_time / SECOND
-    made.samples, made.speed = 1, 0.0
-    made.motor_torque = memory.rest_torque / memory.rest_time
-    made.axial_load = made.temperature = math.nan
-    made.load_source, made.temperature_measured = DERIVED_LOAD, False
+def _end_rest(memory: Any, stretch: Any) -> bool:
+    stretch.start, stretch.duration = memory.rest_start, memory.rest_time / SECOND
+    stretch.samples, stretch.speed = 1, 0.0
+    stretch.motor_torque = memory.rest_torque / memory.rest_time
+    stretch.axial_load = stretch.temperature = math.nan
+    stretch.load_source, stretch.temperature_measured = DERIVED_LOAD, False
     memory.rest_time, memory.rest_torque = 0, 0.0
     return True
 
@@ -200,28 +199,6 @@ def _follow_ripple(memory: Any, speed: float) -> None:
         memory.ripple = min(memory.ripple * RIPPLE_STEP, WIDEST_SHARE)
     else:
         memory.ripple = max(memory.ripple / RIPPLE_STEP, 1e-5)
-
-
-def _speed_share(memory: Any) -> float:
-    """Return the distance of a steady block from the mean speed over that mean [-]."""
-    noise = RIPPLES * memory.ripple / math.sqrt(max(memory.block_samples, 1))
-    return min(max(SPEED_SHARE, noise), WIDEST_SHARE)
-
-
-def _longest_gap(settings: Any, memory: Any) -> int:
-    """Return the longest gap [ns] that ends nothing."""
-    slow = min(PERIODS * memory.period, LARGEST_GAP)
-    return max(settings.max_gap, slow)
-
-
-def _follow_period(memory: Any, span: int) -> None:
-    """Follow the sample period: at once if it is shorter, else slowly."""
-    if not 0 < span <= LARGEST_GAP:
-        return
-    if memory.period == 0 or span < memory.period:
-        memory.period = span
-    else:
-        memory.period += (span - memory.period) // FOLLOWING
 
 
 def _is_other(memory: Any, row: Any) -> bool:
@@ -241,7 +218,8 @@ def _add(memory: Any, row: Any) -> None:
     memory.temperature_measured = row.temperature_source == MEASURED
     if memory.block_samples == 0:
         memory.block_start = row.stamp
-        _clear(memory.block)
+        for at in range(SUMS):
+            memory.block[at] = 0.0
     memory.block_samples += 1
     memory.block[SPEED] += row.speed
     memory.block[LOAD] += 0.0 if memory.derived else row.axial_load
@@ -249,28 +227,29 @@ def _add(memory: Any, row: Any) -> None:
     memory.block[TORQUE] += row.motor_torque
 
 
-def _end_block(settings: Any, memory: Any, made: Any) -> bool:
+def _end_block(settings: Any, memory: Any, stretch: Any) -> bool:
     """Take the block into the run, or begin a run with it; return True if a stretch has ended."""
     ended = False
     if memory.run_samples > 0 and not _fits(memory):
-        ended = _end_stretch(settings, memory, made)
+        ended = _end_stretch(settings, memory, stretch)
         memory.run_samples = memory.pending_samples = 0
     if memory.run_samples == 0:
         memory.run_start = memory.block_start
-        _clear(memory.run)
-    if memory.pending_samples > 0:
-        _take_pending(memory)
+    if memory.pending_samples > 0:  # the block before is not the last one of the run
+        if memory.samples == 0:
+            memory.start = memory.pending_start
+        _add_all(memory.total, memory.pending, memory.samples == 0)
+        memory.samples += memory.pending_samples
+        memory.end, memory.pending_samples = memory.pending_end, 0
         if memory.end - memory.start >= LONGEST:
-            ended = _end_stretch(settings, memory, made)
+            ended = _end_stretch(settings, memory, stretch)
             memory.run_samples = 0
-            _clear(memory.run)
-    _add_all(memory.run, memory.block)
+    _add_all(memory.run, memory.block, memory.run_samples == 0)
     memory.run_samples += memory.block_samples
     if memory.block_start - memory.run_start >= SETTLING:
         memory.pending_samples = memory.block_samples
         memory.pending_start, memory.pending_end = memory.block_start, memory.stamp
-        _clear(memory.pending)
-        _add_all(memory.pending, memory.block)
+        _add_all(memory.pending, memory.block, True)
     memory.block_samples = 0
     return ended
 
@@ -281,47 +260,33 @@ def _fits(memory: Any) -> bool:
     samples, count = memory.run_samples, memory.block_samples
     speed, load = run[SPEED] / samples, run[LOAD] / samples
     warmer = block[TEMPERATURE] / count - run[TEMPERATURE] / samples
+    noise = RIPPLES * memory.ripple / math.sqrt(max(count, 1))
+    share = min(max(SPEED_SHARE, noise), WIDEST_SHARE)
     return (
-        abs(block[SPEED] / count - speed) <= _speed_share(memory) * abs(speed)
+        abs(block[SPEED] / count - speed) <= share * abs(speed)
         and abs(block[LOAD] / count - load) <= max(LOAD_SHARE * abs(load), LOAD_WIDTH)
         and abs(warmer) <= TEMPERATURE_WIDTH
     )
 
 
-def _take_pending(memory: Any) -> None:
-    """Take the last block of the run into the stretch."""
-    if memory.samples == 0:
-        memory.start = memory.pending_start
-        _clear(memory.total)
-    memory.end = memory.pending_end
-    memory.samples += memory.pending_samples
-    _add_all(memory.total, memory.pending)
-    memory.pending_samples = 0
-
-
-def _end_stretch(settings: Any, memory: Any, made: Any) -> bool:
-    """End the stretch and fill `made`; return True if it is long enough."""
+def _end_stretch(settings: Any, memory: Any, stretch: Any) -> bool:
+    """End the stretch and fill `stretch`; return True if it is long enough."""
     samples, span = memory.samples, memory.end - memory.start
     memory.samples = 0
     if samples < FEWEST_SAMPLES or span < SHORTEST:
         return False
-    made.start, made.duration, made.samples = memory.start, span / SECOND, samples
-    made.speed = memory.total[SPEED] / samples
-    made.axial_load = memory.total[LOAD] / samples
-    made.temperature = memory.total[TEMPERATURE] / samples
-    made.motor_torque = memory.total[TORQUE] / samples
-    made.temperature_measured = memory.temperature_measured
-    made.load_source = DERIVED_LOAD if memory.derived else MEASURED_LOAD
+    stretch.start, stretch.duration, stretch.samples = memory.start, span / SECOND, samples
+    stretch.speed = memory.total[SPEED] / samples
+    stretch.axial_load = memory.total[LOAD] / samples
+    stretch.temperature = memory.total[TEMPERATURE] / samples
+    stretch.motor_torque = memory.total[TORQUE] / samples
+    stretch.temperature_measured = memory.temperature_measured
+    stretch.load_source = DERIVED_LOAD if memory.derived else MEASURED_LOAD
     if memory.derived and settings.always_free:
-        made.axial_load, made.load_source = settings.free_load, FREE_LOAD
+        stretch.axial_load, stretch.load_source = settings.free_load, FREE_LOAD
     return True
 
 
-def _clear(sums: Any) -> None:
+def _add_all(sums: Any, more: Any, anew: bool) -> None:
     for at in range(SUMS):
-        sums[at] = 0.0
-
-
-def _add_all(sums: Any, more: Any) -> None:
-    for at in range(SUMS):
-        sums[at] += more[at]
+        sums[at] = more[at] if anew else sums[at] + more[at]

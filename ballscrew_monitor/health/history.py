@@ -10,7 +10,6 @@ measured load asks for is taken off before. Groups are bands of speed and load.
 """
 
 import dataclasses
-import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.mixed import Logs
@@ -21,9 +20,9 @@ from numpy.typing import NDArray
 from surrogate.units import TURN
 
 Array = NDArray[np.float64]
-USUAL_TIME = 2.0
-"""Time in a group and direction at which it weighs half [s]."""
+USUAL_TIME = 2.0  # time in a group and direction at which it weighs half [s]
 ROUNDS = 25
+PARTS = ('friction', 'offset', 'speed', 'load', 'temperature', 'weight')
 
 
 class Group(NamedTuple):
@@ -76,9 +75,6 @@ class History:
         return dataclasses.replace(self, **{name: getattr(self, name)[:count] for name in names})
 
 
-PARTS = ('friction', 'offset', 'speed', 'load', 'temperature', 'weight')
-
-
 def history_of(cells: NDArray[Any], lead: float) -> History | None:
     """
     Return the history that cells (an array of CELL) hold, None without motion that counts.
@@ -91,106 +87,83 @@ def history_of(cells: NDArray[Any], lead: float) -> History | None:
     known = motion[motion['load_source'] != LoadSource.DERIVED]
     for part, load_known in ((known, True), (motion, False)):
         for both in (True, False):
-            entries = _entries(part, lead, both=both)
-            if entries:
-                rest = cells[cells['kind'] == CellKind.STANDSTILL]
-                history = _history(entries, rest, load_known=load_known)
+            history = _history(part, lead, both=both, load_known=load_known)
+            if history is not None:
+                for cell in cells[cells['kind'] == CellKind.STANDSTILL]:
+                    history.standstill[history.start == cell['start']] = cell['motor_torque']
                 return dataclasses.replace(history, gain=gains_of(part, history, lead))
     return None
 
 
-class _Entry(NamedTuple):
-    start: int
-    group: Group
-    friction: float
-    offset: float
-    speed: float
-    load: float
-    temperature: float
-    weight: float
-    warm: bool
-
-
-def _entries(motion: NDArray[Any], lead: float, *, both: bool) -> list[_Entry]:
-    """Return the friction of each group and log, `both` directions together or each alone."""
-    places: dict[tuple[int, int], dict[tuple[int, int], Any]] = {}
-    for cell in motion:
-        place = places.setdefault((int(cell['start']), int(cell['speed_band'])), {})
-        key = int(cell['load_band']), int(cell['direction'])
-        # Where one log has a load from several sources, the longer motion counts.
-        if key not in place or place[key]['duration'] < cell['duration']:
-            place[key] = cell
-    entries = []
-    for (start, speed), place in places.items():
-        for group, cells in _pairs(speed, place) if both else _alone(speed, place):
-            entry = _entry(start, group, cells, lead)
-            if entry.friction > 0.0:
-                entries.append(entry)
-    return entries
-
-
-def _pairs(speed: int, place: dict[tuple[int, int], Any]) -> list[tuple[Group, list[Any]]]:
-    pairs, rest = [], {}
-    for (load, way), cell in place.items():
-        if (load, -way) not in place:
-            rest[load, way] = cell
-        elif way > 0:
-            pairs.append((Group(speed, load, False, 0), [cell, place[load, -way]]))
-    for (load, way), cell in rest.items():
-        if way > 0 and (-load, -way) in rest:
-            pairs.append((Group(speed, load, True, 0), [cell, rest[-load, -way]]))
-    return pairs
-
-
-def _alone(speed: int, place: dict[tuple[int, int], Any]) -> list[tuple[Group, list[Any]]]:
-    return [(Group(speed, load, False, way), [cell]) for (load, way), cell in place.items()]
-
-
-def _entry(start: int, group: Group, cells: list[Any], lead: float) -> _Entry:
-    ways = [int(cell['direction']) for cell in cells]
-    loads = [float(cell['axial_load']) if group.load else 0.0 for cell in cells]
-    ideal = [-load * lead / TURN for load in loads]  # machine frame
-    torque = [float(cell['motor_torque']) - part for cell, part in zip(cells, ideal, strict=True)]
-    along = [way * part for way, part in zip(ways, torque, strict=True)]
-    friction = sum(along) / len(cells)
-    time = min(float(cell['duration']) for cell in cells)
-    least = abs(friction) / (abs(friction) + max(map(abs, ideal)) + 1e-12)
-    return _Entry(
-        start=start,
-        group=group,
-        friction=friction,
-        offset=sum(torque) / 2.0 if len(cells) == 2 else math.nan,
-        speed=sum(abs(float(cell['speed'])) for cell in cells) / len(cells),
-        load=-ways[0] * loads[0],
-        temperature=sum(float(cell['temperature']) for cell in cells) / len(cells),
-        weight=least * least * time / (time + USUAL_TIME),
-        warm=all(bool(cell['temperature_measured']) for cell in cells),
-    )
-
-
-def _history(entries: list[_Entry], rest: NDArray[Any], *, load_known: bool) -> History:
-    start = np.unique([entry.start for entry in entries]).astype(np.int64)
-    groups = sorted({entry.group for entry in entries})
-    rows = np.searchsorted(start, [entry.start for entry in entries])
+def _history(motion: NDArray[Any], lead: float, *, both: bool, load_known: bool) -> History | None:
+    """Return the friction of each log and group, `both` directions together or each alone."""
+    entries, pairs = groups_of(motion, both=both)
+    cells = motion[np.array(pairs, np.int64).reshape(-1, 2).T]  # both directions by entries
+    load = np.where([group.load != 0 for group in entries], cells['axial_load'], 0.0)
+    ideal = -load * lead / TURN  # machine frame
+    torque, way, time = cells['motor_torque'] - ideal, cells['direction'], cells['duration'].min(0)
+    friction = (way * torque).sum(axis=0) / 2.0
+    least = np.abs(friction) / (np.abs(friction) + np.abs(ideal).max(axis=0) + 1e-12)
+    alone = np.array([first == second for first, second in pairs], dtype=bool)
+    values = {
+        'friction': friction,
+        'offset': np.where(alone, np.nan, torque.sum(axis=0) / 2.0),
+        'speed': np.abs(cells['speed']).sum(axis=0) / 2.0,
+        'load': -way[0] * load[0],
+        'temperature': cells['temperature'].sum(axis=0) / 2.0,
+        'weight': least * least * time / (time + USUAL_TIME),
+    }
+    counts = np.flatnonzero(friction > 0.0)
+    if not len(counts):
+        return None
+    start, rows = np.unique(cells['start'][0][counts], return_inverse=True)
+    groups = sorted({entries[at] for at in counts})
     place = {group: at for at, group in enumerate(groups)}
-    columns = [place[entry.group] for entry in entries]
-    shape = len(start), len(groups)
-    parts = {name: np.full(shape, np.nan) for name in PARTS}
-    for name, values in parts.items():
-        values[rows, columns] = [getattr(entry, name) for entry in entries]
+    parts = {name: np.full((len(start), len(groups)), np.nan) for name in PARTS}
+    for name, table in parts.items():
+        table[rows, [place[entries[at]] for at in counts]] = values[name][counts]
     parts['weight'] = np.nan_to_num(parts['weight'])
-    standstill = np.full(len(start), np.nan)
-    for cell in rest:
-        standstill[start == cell['start']] = cell['motor_torque']
+    warm = cells['temperature_measured'][:, counts].all(axis=0)
     return History(
         start=start,
         groups=tuple(groups),
-        standstill=standstill,
+        standstill=np.full(len(start), np.nan),
         gain=np.full(len(start), np.nan),
-        warm=sum(entry.warm for entry in entries) > 0.9 * len(entries),
+        warm=bool(warm.sum() > 0.9 * len(counts)),
         load_known=load_known,
         **parts,
     )
+
+
+def groups_of(motion: NDArray[Any], *, both: bool) -> tuple[list[Group], list[tuple[int, int]]]:
+    """
+    Return the groups in which logs ran, and the places of the cells of both directions.
+
+    Of `motion` (an array of CELL), `both` directions together, or each alone without load.
+
+    """
+    logs: dict[tuple[int, int], dict[tuple[int, int], int]] = {}
+    names = ['start', 'speed_band', 'load_band', 'direction']
+    for at, (start, speed, load, way) in enumerate(motion[names].tolist()):
+        log = logs.setdefault((start, speed), {})
+        # Where one log has a load from several sources, the longer motion counts.
+        other = log.setdefault((load, way), at)
+        if motion['duration'][other] < motion['duration'][at]:
+            log[load, way] = at
+    groups, pairs = [], []
+    for (_, speed), log in logs.items():
+        for (load, way), at in log.items():
+            if not both:
+                if load == 0:  # under load alone, an error of the load is one of the friction
+                    groups.append(Group(speed, load, False, way))
+                    pairs.append((at, at))
+            elif way > 0 and (load, -way) in log:
+                groups.append(Group(speed, load, False, 0))
+                pairs.append((at, log[load, -way]))
+            elif way > 0 and (-load, -way) in log and (-load, way) not in log:
+                groups.append(Group(speed, load, True, 0))
+                pairs.append((at, log[-load, -way]))
+    return groups, pairs
 
 
 def gains_of(motion: NDArray[Any], history: History, lead: float) -> Array:
@@ -212,9 +185,8 @@ def gains_of(motion: NDArray[Any], history: History, lead: float) -> Array:
         speed, friction = (part[at, known][order] for part in (history.speed, history.friction))
         drag = np.interp(np.abs(cells['speed']), speed, friction) * cells['direction']
         ideal = -cells['axial_load'] * lead / TURN
-        offset = float(np.mean(history.offset[at, known]))
         weight = ideal * cells['duration']
-        torque = cells['motor_torque'] - drag - offset
+        torque = cells['motor_torque'] - drag - float(np.mean(history.offset[at, known]))
         gains[at] = float(weight @ torque) / float(weight @ ideal)
     return gains
 
@@ -243,10 +215,8 @@ def effects_of(history: History) -> Effects:
     """
     compared = connected(history.weight > 0.0)
     seen = (history.weight > 0.0) & compared[:, None]
-    usual_friction = np.where(seen, history.friction, 0.0).sum(axis=0) / np.maximum(
-        seen.sum(axis=0), 1
-    )
-    weight = np.where(seen, history.weight * usual_friction, 0.0)
+    total = np.where(seen, history.friction, 0.0).sum(axis=0)
+    weight = np.where(seen, history.weight * (total / np.maximum(seen.sum(axis=0), 1)), 0.0)
     friction = np.where(seen, np.log(np.where(seen, history.friction, 1.0)), 0.0)
     warmth = np.where(seen, history.temperature, 0.0) if history.warm else np.zeros_like(friction)
     effect, groups = two_ways(friction, weight)

@@ -16,8 +16,7 @@ from ballscrew_monitor.health.summary import add, clock_objection
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
-MOST_NOTES = 5
-"""Different sentences on what did not count that are told, the last ones."""
+MOST_NOTES = 5  # different sentences on what did not count that are given, the last ones
 LONGEST_RUNNING_IN = 1000.0 * HOUR
 
 
@@ -25,26 +24,25 @@ class HealthKeeper:
     """
     Keeps and assesses the health of one axis; a thread may name a baseline beside that.
 
-    What cannot be written waits, day by day.
+    The `store` is opened by others. What cannot be written waits, day by day.
 
     """
 
     def __init__(self, axis: str, store: HealthStore) -> None:
-        """Use a `store` that others open."""
         self._axis, self._store = axis, store
         self._cells: dict[Any, Cell] = {}
         self._bins: list[SpectrumBin] = []
         self._notes: dict[str, None] = {}
         self._aged: int | None = None
 
-    def gather(self, found: Collected, today: int) -> None:
+    def gather(self, collected: Collected, today: int) -> None:
         """Take what has ended; motion of another day than `today`, since 1970, does not count."""
-        for stretch in found.stretches:
+        for stretch in collected.stretches:
             self._note(add(self._cells, stretch, today=today))
-        for one in found.bins:
-            why = clock_objection(one.first_day, today)
-            self._note(why)
-            self._bins += [] if why else [one]
+        for part in collected.bins:
+            objection = clock_objection(part.first_day, today)
+            self._note(objection)
+            self._bins += [] if objection else [part]
         self._bins = merged_bins(self._bins)
 
     def keep(self, today: int) -> None:
@@ -54,8 +52,8 @@ class HealthKeeper:
                 self._store.add(self._axis, self._cells.values(), self._bins)
                 self._cells, self._bins = {}, []
             if self._aged != today:
-                for said in self._store.age(self._axis, today):
-                    self._note(said)
+                for note in self._store.age(self._axis, today):
+                    self._note(note)
                 self._aged = today
 
     def assess(self, now: int, surface: Surface, settings: HealthSettings) -> Health:
@@ -83,19 +81,19 @@ class HealthKeeper:
             raise InputError(
                 f'running_in is {running_in:g} s, allowed is 0 to {LONGEST_RUNNING_IN:g} s'
             )
-        made: dict[str, Any] = {'reason': reason, 'named_at': now, 'screw': screw}
+        named_at: dict[str, Any] = {'reason': reason, 'named_at': now, 'screw': screw}
         with self._store.lock:
             if begin or end:
                 kept = self._store.read(self._axis)
-                baseline = named(kept.cells, begin, end, **made)
+                baseline = named(kept.cells, begin, end, **named_at)
             else:
-                baseline = Baseline(begin=now, end=0, left_out=running_in, **made)
+                baseline = Baseline(begin=now, end=0, left_out=running_in, **named_at)
             self._store.keep_baseline(self._axis, baseline)
         return 'named the baseline' if end else 'the baseline is learned from now on'
 
-    def _note(self, said: str) -> None:
-        if said:
-            self._notes.pop(said, None)
-            self._notes[said] = None
+    def _note(self, sentence: str) -> None:
+        if sentence:
+            self._notes.pop(sentence, None)
+            self._notes[sentence] = None
             if len(self._notes) > MOST_NOTES:
                 del self._notes[next(iter(self._notes))]

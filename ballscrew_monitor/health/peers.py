@@ -16,25 +16,20 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, NOW, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
-from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
+from ballscrew_monitor.health.mixed import estimate, GRID, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
 from ballscrew_monitor.health.records import Quantity, quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
 import numpy as np
 from numpy.typing import NDArray
 
-FEWEST_PEERS = 2
-"""Other axes with which one axis is compared: with a single one, either may have changed."""
-LEAST_COMMON = 0.5
-"""Share of the groups of an axis that a peer has, too, from which on they compare."""
-OWN_DOUBT = 0.02
-"""Standard deviation of the friction of an axis from log to log, at least [-]."""
+FEWEST_PEERS = 2  # other axes to compare with: beside a single one, either may have changed
+LEAST_COMMON = 0.5  # share of the groups of an axis that a peer has, too, to compare them [-]
+OWN_DOUBT = 0.02  # standard deviation of the friction of an axis from log to log, at least [-]
 NAME = 'friction beside peers'
 OWN_SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Shares of the variance of a slope that axes of one kind do not have in common, all alike [-]."""
-ROUNDS = 20
-"""Steps of expectation and maximisation, after which the weights of pairs stay."""
-USUAL_PEERS = 2.0
-"""Peers for which the usual weights of scatter and wander count."""
+ROUNDS = 20  # steps of expectation and maximisation, after which the weights of pairs stay
+USUAL_PEERS = 2.0  # peers for which the usual weights of scatter and wander count
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,7 +37,7 @@ class Peer:
     """
     An axis among its peers.
 
-    `difference` [-] of its friction torque from the median of theirs; `range_of_peers` [-] is the
+    `difference` [-] of its friction torque from the median of theirs; the range of peers is the
     largest difference between two of them; `is_apart` where the interval lies beyond that range
     and beyond what counts as normal.
 
@@ -51,7 +46,6 @@ class Peer:
     axis: str
     difference: Quantity
     peers: int
-    range_of_peers: float
     is_apart: bool
 
     @property
@@ -72,9 +66,16 @@ def ranked(cells: Mapping[str, NDArray[Any]], lead: float) -> list[Peer]:
 
     """
     levels = {axis: level for axis, own in cells.items() if (level := _level(own, lead))}
-    peers = [_peer(axis, levels) for axis in levels]
-    known = [one for one in peers if one is not None]
-    return sorted(known, key=lambda one: (not one.is_apart, -abs(one.difference.value)))
+    peers = []
+    for axis, own in levels.items():
+        apart = []
+        for peer, other in levels.items():
+            common = [group for group in own if group in other]
+            if peer != axis and len(common) >= LEAST_COMMON * len(own):
+                apart.append(statistics.mean(own[group] - other[group] for group in common))
+        if len(apart) >= FEWEST_PEERS:
+            peers.append(_peer(axis, apart, f'{len(own)} places, the last {NOW} logs'))
+    return sorted(peers, key=lambda peer: (not peer.is_apart, -abs(peer.difference.value)))
 
 
 def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
@@ -89,33 +90,15 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
     return {group: float(level) + now for group, level, known in pairs if known}
 
 
-def _difference(own: Mapping[Any, float], other: Mapping[Any, float]) -> float:
-    """Return the mean difference of ln(friction) in common groups [-], NaN for too few."""
-    common = [group for group in own if group in other]
-    if len(common) < LEAST_COMMON * len(own):
-        return math.nan
-    return statistics.mean(own[group] - other[group] for group in common)
-
-
-def _peer(axis: str, levels: Mapping[str, Mapping[Any, float]]) -> Peer | None:
-    others = {
-        peer: difference
-        for peer in levels
-        if peer != axis and math.isfinite(difference := _difference(levels[axis], levels[peer]))
-    }
-    if len(others) < FEWEST_PEERS:
-        return None
-    apart = (abs(value - other) for value in others.values() for other in others.values())
-    spread = max(apart)
-    value = statistics.median(others.values())
-    reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(others))
+def _peer(axis: str, apart: Sequence[float], evidence: str) -> Peer:
+    """Return an axis by the differences of its ln(friction) from its peers."""
+    value, spread = statistics.median(apart), max(apart) - min(apart)
+    reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(apart))
     ends = (value, value - reach, value + reach)
-    text = f'{len(levels[axis])} places, the last {NOW} logs'
     return Peer(
         axis=axis,
-        difference=quantity(NAME, '-', map(math.expm1, ends), text),
-        peers=len(others),
-        range_of_peers=math.expm1(spread),
+        difference=quantity(NAME, '-', map(math.expm1, ends), evidence),
+        peers=len(apart),
         is_apart=abs(value) - reach > max(TOLERANCE, spread),
     )
 
@@ -148,29 +131,25 @@ def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
 
 def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
     now = np.arange(len(logs.time)) >= len(logs.time) - now_of(logs.time)
-    found = estimate(logs, ~now, now, warm=warm)
-    alone = found.pairs / np.exp(grid().prior)
+    change = estimate(logs, ~now, now, warm=warm)
+    alone = change.pairs / np.exp(GRID.prior)
     pairs = tuple((alone / alone.sum()).tolist())
-    variance = found.slope_deviation**2
+    variance = change.slope_deviation**2
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
     if information <= 0.0 or not warm:
         return Spread(SLOPE, math.inf, pairs, groups)
-    slope = SLOPE + (found.slope - SLOPE) / variance / information
+    slope = SLOPE + (change.slope - SLOPE) / variance / information
     return Spread(slope, information**-0.5, pairs, groups)
 
 
 def priors(spreads: Mapping[str, Spread]) -> dict[str, Prior]:
     """Return the prior of each axis by the spreads of its peers; axes of one screw by name."""
-    return {axis: prior_of(_peers_of(axis, spreads)) for axis in spreads}
-
-
-def _peers_of(axis: str, spreads: Mapping[str, Spread]) -> list[Spread]:
-    own = spreads[axis].groups
-    return [
-        spread
-        for other, spread in spreads.items()
-        if other != axis and len(own & spread.groups) >= LEAST_COMMON * len(own)
-    ]
+    known = {}
+    for axis, own in spreads.items():
+        others = [spread for other, spread in spreads.items() if other != axis]
+        least = LEAST_COMMON * len(own.groups)
+        known[axis] = prior_of([peer for peer in others if len(own.groups & peer.groups) >= least])
+    return known
 
 
 def prior_of(peers: Sequence[Spread]) -> Prior:
@@ -184,7 +163,7 @@ def prior_of(peers: Sequence[Spread]) -> Prior:
     if len(peers) < FEWEST_PEERS:
         return USUAL
     slope, doubt = _slope_of([peer for peer in peers if math.isfinite(peer.deviation)])
-    usual = np.exp(grid().prior)
+    usual = np.exp(GRID.prior)
     usual = weight = usual / usual.sum()
     likelihood = np.array([peer.pairs for peer in peers])
     for _ in range(ROUNDS):

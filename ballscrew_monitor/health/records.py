@@ -20,8 +20,7 @@ from surrogate.store import MAY_BE_NAN
 from surrogate.surface.records import dtype_of
 
 NAN = math.nan
-TOLERANCE = 0.03
-"""Change of the drag, or loss of preload, that counts as normal [-]."""
+TOLERANCE = 0.03  # change of the friction that counts as normal [-]
 
 
 class LoadSource(enum.IntEnum):
@@ -283,11 +282,11 @@ class Health:
     def unknown(self) -> dict[str, list[str]]:
         """Return the names of what is not known, by the reason."""
         names: dict[str, list[str]] = {}
-        for quantity in self.quantities:
-            if not quantity.is_known:
-                names.setdefault(quantity.reason, []).append(quantity.name)
+        for each in self.quantities:
+            if not each.is_known:
+                names.setdefault(each.reason, []).append(each.name)
         return names
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name."""
-        return next(one for one in self.quantities if one.name == name)
+        return next(each for each in self.quantities if each.name == name)

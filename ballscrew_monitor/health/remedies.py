@@ -23,11 +23,8 @@ from surrogate.formulas.grades import equivalent_temperature, ISO_VG
 from surrogate.surface import Surface, Validity
 from surrogate.units import MICRO, MINUTE, TURN, ZERO_CELSIUS
 
-NAN = math.nan
-AIMED = 0.9
-"""Share of the time of a programme that a remedy brings into the zone [-]."""
-MOST_POINTS = 60
-"""Points of a programme that are asked, those with most time first."""
+AIMED = 0.9  # share of the time of a programme that a remedy brings into the zone [-]
+MOST_POINTS = 60  # points of a programme that are asked, those with most time first
 FILM_EXPONENT = 0.67
 """Exponent of the speed in the film of a point contact, Hamrock and Dowson (1977) [-]."""
 
@@ -98,14 +95,14 @@ class Programme:
         for point in self.points:
             speed, load = max(abs(point.speed) * faster, slowest), opposed(point)
             temperature = point.temperature * temperature_ratio + warmer
-            found = self.surface.lookup(speed, load, temperature)
-            if found.validity is Validity.VALID:
+            state = self.surface.lookup(speed, load, temperature)
+            if state.validity is Validity.VALID:
                 light = not efficiency or abs(load) < self.limits.light_load
-                good = light or found.efficiency >= self.limits.efficiency
+                good = light or state.efficiency >= self.limits.efficiency
                 known += point.duration
-                inside += point.duration * (found.rcs < self.limits.rcs and good)
+                inside += point.duration * (state.rcs < self.limits.rcs and good)
         time = sum(point.duration for point in self.points)
-        return inside / known if known > 0.5 * time else NAN
+        return inside / known if known > 0.5 * time else math.nan
 
 
 def remedies_of(programme: Programme, *, speed_allowed: bool = False) -> dict[str, float]:
@@ -115,44 +112,28 @@ def remedies_of(programme: Programme, *, speed_allowed: bool = False) -> dict[st
     temperature [degC], grade [mm2/s], film factor [-] and, where `speed_allowed`, feed [m/min].
 
     """
-    values = {
-        'temperature': _temperature(programme),
-        'grade': _grade(programme),
-        'film factor': _film_factor(programme),
-        'feed': _feed(programme) if speed_allowed else None,
-    }
-    return {kind: value for kind, value in values.items() if value is not None}
-
-
-def _temperature(programme: Programme) -> float | None:
-    """Return the nearest whole degree that helps; all points are shifted alike."""
-    here, (low, high) = programme.temperature, programme.surface.temperature_range
+    remedies: dict[str, float] = {}
+    surface, oil = programme.surface, programme.surface.header['inputs']['lubricant']
+    here, (low, high) = programme.temperature, surface.temperature_range
     degrees = range(math.ceil(low - ZERO_CELSIUS), math.floor(high - ZERO_CELSIUS) + 1)
     for degree in sorted(degrees, key=lambda each: abs(each + ZERO_CELSIUS - here)):
         if programme.share(warmer=degree + ZERO_CELSIUS - here) >= AIMED:
-            return float(degree)
-    return None
-
-
-def _grade(programme: Programme) -> float | None:
-    """Return the helpful grade that is next to the oil, if the surface states its oil."""
-    oil = programme.surface.header['inputs']['lubricant']
-    if not {'kinematic_viscosity_40', 'kinematic_viscosity_100'} <= oil.keys():
-        return None
-    at_40, at_100 = (float(oil[f'kinematic_viscosity_{at}']) for at in (40, 100))
-    for grade in sorted(ISO_VG, key=lambda each: abs(math.log(each / (MICRO * at_40)))):
-        ratio = equivalent_temperature(1.0, grade / MICRO, at_40, at_100)
-        if programme.share(temperature_ratio=ratio) >= AIMED:
-            return float(grade)
-    return None
-
-
-def _film_factor(programme: Programme) -> float | None:
-    """Return the film factor of oil in plenty if the sheet states less, and it helps."""
-    factor = float(programme.surface.header['inputs']['lubricant'].get('film_factor', 1.0))
+            remedies['temperature'] = float(degree)
+            break
+    if {'kinematic_viscosity_40', 'kinematic_viscosity_100'} <= oil.keys():
+        at_40, at_100 = (float(oil[f'kinematic_viscosity_{at}']) for at in (40, 100))
+        for grade in sorted(ISO_VG, key=lambda each: abs(math.log(each / (MICRO * at_40)))):
+            ratio = equivalent_temperature(1.0, grade / MICRO, at_40, at_100)
+            if programme.share(temperature_ratio=ratio) >= AIMED:
+                remedies['grade'] = float(grade)
+                break
+    factor = float(oil.get('film_factor', 1.0))
     faster = (1.0 / factor) ** (1.0 / FILM_EXPONENT)
-    helps = factor < 1.0 and programme.share(faster=faster, efficiency=False) >= AIMED
-    return 1.0 if helps else None
+    if factor < 1.0 and programme.share(faster=faster, efficiency=False) >= AIMED:
+        remedies['film factor'] = 1.0
+    if speed_allowed and (feed := _feed(programme)) is not None:
+        remedies['feed'] = feed
+    return remedies
 
 
 def _feed(programme: Programme) -> float | None:

@@ -37,10 +37,8 @@ from surrogate.surface.records import many
 from surrogate.units import TURN
 
 NAN = math.nan
-SAMPLING = SECOND // 10
-"""Time between two looks at the severity [ns]."""
-MEAN_PRESSURE = 2.0 / 3.0
-"""Mean over the largest pressure of a Hertzian contact [-]."""
+SAMPLING = SECOND // 10  # time between two looks at the severity [ns]
+MEAN_PRESSURE = 2.0 / 3.0  # mean over the largest pressure of a Hertzian contact [-]
 BANDS = 2 * LAST_LOAD + 2
 """Bands of load from the most negative one on, and the band of loads that are not known."""
 CLASSES = len(SEVERITIES) + 1
@@ -87,11 +85,11 @@ def spectrum_settings(surface: Surface, max_gap: int = MAX_GAP) -> SpectrumSetti
     return SpectrumSettings(max_gap=max_gap, sliding=sliding)
 
 
-def count(tables: Any, settings: Any, memory: Any, row: Any, found: Any) -> bool:
+def count(tables: Any, settings: Any, memory: Any, row: Any, point: Any) -> bool:
     """
     Take a row; return False, and take nothing, where it is of another day than the sums.
 
-    `tables` are those of the surface; `found` is room for a lookup.
+    `tables` are those of the surface; `point` is room for a lookup.
 
     """
     if row.tick:
@@ -108,14 +106,14 @@ def count(tables: Any, settings: Any, memory: Any, row: Any, found: Any) -> bool
     if memory.moving:
         _set_load(memory, row)
         _set_power(tables, memory, row)
-        _set_severity(tables, settings, memory, row, found)
+        _set_severity(tables, settings, memory, row, point)
     return True
 
 
-def count_many(tables: Any, settings: Any, memory: Any, rows: Any, found: Any, begin: int) -> int:
+def count_many(tables: Any, settings: Any, memory: Any, rows: Any, point: Any, begin: int) -> int:
     """Take rows from `begin` on; return the place of the first one that was not taken."""
     for at in range(begin, len(rows)):
-        if not count(tables, settings[0], memory[0], rows[at], found[0]):
+        if not count(tables, settings[0], memory[0], rows[at], point[0]):
             return at
     return len(rows)
 
@@ -143,7 +141,7 @@ def _set_power(tables: Any, memory: Any, row: Any) -> None:
     memory.measured = (along - memory.load * tables.lead / TURN) * memory.speed
 
 
-def _set_severity(tables: Any, settings: Any, memory: Any, row: Any, found: Any) -> None:
+def _set_severity(tables: Any, settings: Any, memory: Any, row: Any, point: Any) -> None:
     """Set the class of severity; it holds until the next look at it."""
     if row.validity != VALID or math.isnan(memory.load):
         memory.looked, memory.severity = False, NO_CLASS
@@ -151,9 +149,9 @@ def _set_severity(tables: Any, settings: Any, memory: Any, row: Any, found: Any)
     if memory.looked and 0 <= row.stamp - memory.looked_at < SAMPLING:
         return
     memory.looked, memory.looked_at, memory.severity = True, row.stamp, NO_CLASS
-    look_up(tables, memory.speed, memory.load, row.temperature, found)
-    look_up_rest(tables, memory.load, found)
-    severity = found.asperity_share * MEAN_PRESSURE * found.max_pressure
+    look_up(tables, memory.speed, memory.load, row.temperature, point)
+    look_up_rest(tables, memory.load, point)
+    severity = point.asperity_share * MEAN_PRESSURE * point.max_pressure
     if math.isfinite(settings.sliding):
         severity *= memory.speed * settings.sliding
     if math.isfinite(severity):
@@ -179,68 +177,64 @@ def _add_span(memory: Any, span: float) -> None:
 
 def take_bins(memory: SpectrumMemory) -> list[SpectrumBin]:
     """Return the bins of the day so far, and begin the sums again."""
-    found = [_bin(memory, band) for band in range(BANDS) if memory.time[band] > 0.0]
+    bins = []
+    for band in (band for band in range(BANDS) if memory.time[band] > 0.0):
+        angle, time, first = memory.angle[band], memory.time[band], band * CLASSES
+        known = memory.measured_time[band] > 0.0
+        end = first + CLASSES
+        bins.append(
+            SpectrumBin(
+                first_day=memory.day,
+                load_band=UNKNOWN_LOAD if band == BANDS - 1 else band - LAST_LOAD,
+                axial_load=memory.load_angle[band] / angle if angle > 0.0 else NAN,
+                angle=angle,
+                speed=angle / time,
+                time=time,
+                wear_time=tuple(memory.wear_time[first:end]),
+                energy_lost=memory.energy_lost[band],
+                energy_measured=memory.energy_measured[band] if known else NAN,
+                energy_expected=memory.energy_expected[band] if known else NAN,
+            )
+        )
     for name in _SUMS:
         sums = getattr(memory, name)
         sums[:] = [0.0] * len(sums)
     memory.filled = False
-    return found
+    return bins
 
 
-def _bin(memory: SpectrumMemory, band: int) -> SpectrumBin:
-    angle, time, first = memory.angle[band], memory.time[band], band * CLASSES
-    known = memory.measured_time[band] > 0.0
-    end = first + CLASSES
-    return SpectrumBin(
-        first_day=memory.day,
-        load_band=UNKNOWN_LOAD if band == BANDS - 1 else band - LAST_LOAD,
-        axial_load=memory.load_angle[band] / angle if angle > 0.0 else NAN,
-        angle=angle,
-        speed=angle / time,
-        time=time,
-        wear_time=tuple(memory.wear_time[first:end]),
-        energy_lost=memory.energy_lost[band],
-        energy_measured=memory.energy_measured[band] if known else NAN,
-        energy_expected=memory.energy_expected[band] if known else NAN,
-    )
-
-
-_SUMS = [one.name for one in dataclasses.fields(SpectrumMemory) if one.metadata]
+_SUMS = [field.name for field in dataclasses.fields(SpectrumMemory) if field.metadata]
 
 
 def merged_bins(bins: Iterable[SpectrumBin], today: int | None = None) -> list[SpectrumBin]:
     """Return bins with those of one period and band added up; older days `today` are merged."""
-    found: dict[tuple[int, int, int], SpectrumBin] = {}
-    for one in bins:
-        period = one.first_day, one.days
+    merged: dict[tuple[int, int, int], SpectrumBin] = {}
+    for part in bins:
+        first, days = part.first_day, part.days
         if today is not None:
-            period = period_of(*period, today)
-        key = *period, one.load_band
-        moved = dataclasses.replace(one, first_day=period[0], days=period[1])
-        found[key] = _sum(found[key], moved) if key in found else moved
-    return [found[key] for key in sorted(found)]
+            first, days = period_of(first, days, today)
+        key = first, days, part.load_band
+        part = dataclasses.replace(part, first_day=first, days=days)
+        merged[key] = _sum(merged[key], part) if key in merged else part
+    return [merged[key] for key in sorted(merged)]
 
 
-def _sum(one: SpectrumBin, other: SpectrumBin) -> SpectrumBin:
-    """Return two bins of one period and band as one."""
-    angle, time = one.angle + other.angle, one.time + other.time
-    load = one.axial_load * one.angle + other.axial_load * other.angle
+def _sum(part: SpectrumBin, other: SpectrumBin) -> SpectrumBin:
+    """Return two bins of one period and band as one; an energy that is not known adds nothing."""
+    angle, time = part.angle + other.angle, part.time + other.time
+    load = part.axial_load * part.angle + other.axial_load * other.angle
+    times = itertools.zip_longest(part.wear_time, other.wear_time, fillvalue=0.0)
+    energies: dict[str, Any] = {'energy_lost': part.energy_lost + other.energy_lost}
+    for name in ('energy_measured', 'energy_expected'):
+        pair = getattr(part, name), getattr(other, name)
+        known = [energy for energy in pair if not math.isnan(energy)]
+        energies[name] = sum(known) if known else NAN
     return dataclasses.replace(
-        one,
+        part,
         axial_load=load / angle,
         angle=angle,
         speed=angle / time,
         time=time,
-        wear_time=tuple(
-            map(sum, itertools.zip_longest(one.wear_time, other.wear_time, fillvalue=0.0))
-        ),
-        energy_lost=one.energy_lost + other.energy_lost,
-        energy_measured=_known_sum(one.energy_measured, other.energy_measured),
-        energy_expected=_known_sum(one.energy_expected, other.energy_expected),
+        wear_time=tuple(map(sum, times)),
+        **energies,
     )
-
-
-def _known_sum(one: float, other: float) -> float:
-    if math.isnan(one) or math.isnan(other):
-        return other if math.isnan(one) else one
-    return one + other

@@ -23,10 +23,8 @@ from surrogate.store import opened_to_read, readable, SHARE, Store, Table
 
 FILE = 'health.sqlite3'
 VERSION = 1
-LIMIT = 20_000_000
-"""Size [B] that the history of one axis may have."""
-MOST_BASELINES = 20
-"""Baselines of an axis that are kept, the newest ones."""
+LIMIT = 20_000_000  # size [B] that the history of one axis may have
+MOST_BASELINES = 20  # of an axis that are kept, the newest ones
 
 
 def _check_cell(cell: Cell) -> None:
@@ -35,24 +33,15 @@ def _check_cell(cell: Cell) -> None:
         raise ValueError(f'a cell of {cell.stretches} stretches')
 
 
-def _check_bin(one: SpectrumBin) -> None:
-    if one.time <= 0.0 or not all(time >= 0.0 for time in one.wear_time):
-        raise ValueError(f'a bin of {one.time} s')
+def _check_bin(part: SpectrumBin) -> None:
+    if part.time <= 0.0 or not all(time >= 0.0 for time in part.wear_time):
+        raise ValueError(f'a bin of {part.time} s')
 
 
-CELLS = Table(
-    name='cells', kind=Cell, beside={'axis': str}, index='axis, first_day', check=_check_cell
-)
-SPECTRUM = Table(
-    name='spectrum',
-    kind=SpectrumBin,
-    beside={'axis': str},
-    index='axis, first_day',
-    check=_check_bin,
-)
-BASELINES = Table(
-    name='baselines', kind=Baseline, beside={'number': int, 'axis': str}, key='number'
-)
+AXIS, DAYS = {'axis': str}, 'axis, first_day'
+CELLS = Table(name='cells', kind=Cell, beside=AXIS, index=DAYS, check=_check_cell)
+SPECTRUM = Table(name='spectrum', kind=SpectrumBin, beside=AXIS, index=DAYS, check=_check_bin)
+BASELINES = Table(name='baselines', kind=Baseline, beside={'number': int, **AXIS}, key='number')
 TABLES = (CELLS, SPECTRUM, BASELINES)
 OLDEST = """
 SELECT axis, min(first_day), max(first_day), count(*) AS places FROM cells
@@ -101,7 +90,7 @@ class HealthStore(Store):
         cells, spectrum = list(cells), list(spectrum)
         with self.transaction():
             held, bins = (
-                self._take_periods(table, axis, [(one.first_day, one.days) for one in records])
+                self._take_periods(table, axis, [(part.first_day, part.days) for part in records])
                 for table, records in ((CELLS, cells), (SPECTRUM, spectrum))
             )
             self.put(CELLS, by_place([*held, *cells]).values(), axis=axis)
@@ -176,20 +165,13 @@ def read_health(folder: Path) -> dict[str, KeptHealth]:
 
 def _read(store: Store, axis: str) -> KeptHealth:
     """Return what can be read of an axis, and how many rows cannot."""
-    rows = {
-        table.name: store.rows(table, f'WHERE axis = ? ORDER BY {order}', (axis,))
-        for table, order in (
-            (CELLS, 'first_day, rowid'),
-            (SPECTRUM, 'first_day, rowid'),
-            (BASELINES, 'number'),
-        )
-    }
-    read = {table.name: readable(table, rows[table.name]) for table in TABLES}
-    bad = sum(len(rows[name]) - len(read[name]) for name in rows)
+    parts: list[list[Any]] = []
+    bad = 0
+    for table in TABLES:
+        order = 'number' if table is BASELINES else 'first_day, rowid'
+        rows = store.rows(table, f'WHERE axis = ? ORDER BY {order}', (axis,))
+        parts.append([record for _, record in readable(table, rows)])
+        bad += len(rows) - len(parts[-1])
     note = f'{store.file}: {bad} rows of axis {axis} cannot be read, they do not count'
-    return KeptHealth(
-        cells=tuple(cell for _, cell in read['cells']),
-        spectrum=tuple(one for _, one in read['spectrum']),
-        baselines=tuple(one for _, one in read['baselines']),
-        notes=(note,) if bad else (),
-    )
+    cells, spectrum, baselines = map(tuple, parts)
+    return KeptHealth(cells, spectrum, baselines, (note,) if bad else ())

@@ -9,11 +9,12 @@ roundings, and no stretch is lost or counted twice.
 """
 
 from collections import Counter
-from collections.abc import Iterable, MutableMapping, Sequence
+from collections.abc import Iterable, MutableMapping
 import dataclasses
 import datetime
 import math
-from typing import Any, NamedTuple
+from operator import attrgetter
+from typing import Any
 
 from ballscrew_monitor.health.bands import day_of, FIRST_DAY, load_band, period_of, speed_band
 from ballscrew_monitor.health.records import CELL, Cell, CellKind, LoadSource, Missing, Stretch
@@ -21,37 +22,21 @@ from ballscrew_monitor.health.rows import DAY
 import numpy as np
 from numpy.typing import NDArray
 
-MOST_PLACES = 400
-"""Cells of one period; those with the fewest stretches go first."""
+MOST_PLACES = 400  # cells of one period; those with the fewest stretches go first
 MEANS = ('speed', 'axial_load', 'temperature', 'motor_torque', 'backlash')
-NAMES = tuple(one.name for one in dataclasses.fields(Cell))
+NAMES = tuple(field.name for field in dataclasses.fields(Cell))
+PLACE = attrgetter(
+    *('start', 'days', 'kind', 'speed_band', 'load_band', 'direction', 'load_source'),
+    'temperature_measured',
+)
+"""All that tells cells apart: log, period [days], kind, place and sources."""
+Cells = MutableMapping[Any, Cell]
+"""Cells by their places."""
 
 
-class Key(NamedTuple):
-    """All that tells cells apart: log, period [days], kind, place and sources."""
-
-    start: int
-    days: int
-    kind: int
-    speed_band: int
-    load_band: int
-    direction: int
-    load_source: int
-    temperature_measured: bool
-
-
-Cells = MutableMapping[Key, Cell]
-"""Cells by their keys."""
-
-
-def key_of(cell: Cell) -> Key:
-    """Return the key of a cell."""
-    return Key(*(getattr(cell, name) for name in Key._fields))
-
-
-def by_place(cells: Iterable[Cell]) -> dict[Key, Cell]:
-    """Return cells by their keys; those of one key are merged."""
-    kept: dict[Key, Cell] = {}
+def by_place(cells: Iterable[Cell]) -> dict[Any, Cell]:
+    """Return cells by their places; those of one place are merged."""
+    kept: dict[Any, Cell] = {}
     for cell in cells:
         _put(kept, cell)
     return kept
@@ -73,13 +58,12 @@ def add(cells: Cells, stretch: Stretch, start: int | None = None, today: int | N
 
     """
     day = day_of(stretch.start)
-    objection = clock_objection(day, today)
-    if objection:
+    if objection := clock_objection(day, today):
         return objection
     cell = cell_of(stretch, day * DAY if start is None else start)
-    is_new = key_of(cell) not in cells
+    is_new = PLACE(cell) not in cells
     _put(cells, cell)
-    if is_new and _drop_rare(cells, (cell.start, 1)):
+    if is_new and _drop_rare(cells, (cell.start, cell.days)):
         return f'a stretch does not count: its log has {MOST_PLACES} places already'
     return ''
 
@@ -135,18 +119,14 @@ def merged(cell: Cell, other: Cell) -> Cell:
     """Return two cells of one key as one, with their means by time."""
     duration = cell.duration + other.duration
     share = other.duration / duration if duration > 0.0 else 0.0
-    means: dict[str, Any] = {
-        name: _mean(getattr(cell, name), getattr(other, name), share) for name in MEANS
-    }
+    means: dict[str, Any] = {}
+    for name in MEANS:
+        value, more = getattr(cell, name), getattr(other, name)
+        mean = value + share * (more - value)
+        means[name] = mean if not math.isnan(mean) else more if math.isnan(value) else value
     return dataclasses.replace(
         cell, stretches=cell.stretches + other.stretches, duration=duration, **means
     )
-
-
-def _mean(value: float, other: float, share: float) -> float:
-    if math.isnan(value) or math.isnan(other):
-        return other if math.isnan(value) else value
-    return value + share * (other - value)
 
 
 def aged(cells: Iterable[Cell], today: int) -> tuple[list[Cell], list[str]]:
@@ -157,8 +137,8 @@ def aged(cells: Iterable[Cell], today: int) -> tuple[list[Cell], list[str]]:
     end; notes say how many, and how many of too many places were left out.
 
     """
-    kept: dict[Key, Cell] = {}
-    future = []
+    kept: dict[Any, Cell] = {}
+    future, notes = [], []
     for cell in cells:
         if cell.first_day > today + 1:
             future.append(cell)
@@ -166,30 +146,27 @@ def aged(cells: Iterable[Cell], today: int) -> tuple[list[Cell], list[str]]:
         first_day, days = period_of(cell.first_day, cell.days, today)
         start = cell.start if days == 1 else first_day * DAY
         _put(kept, dataclasses.replace(cell, start=start, first_day=first_day, days=days))
-    periods = Counter((key.start, key.days) for key in kept)
-    dropped = sum(
-        _drop_rare(kept, period) for period, places in periods.items() if places > MOST_PLACES
-    )
-    notes = []
     if future:
         first = date_text(min(cell.first_day for cell in future))
         notes.append(
             f'{len(future)} cells from {first} on do not count: the clock says {date_text(today)}'
         )
-    if dropped:
+    sizes = Counter((cell.start, cell.days) for cell in kept.values())
+    full = [period for period, places in sizes.items() if places > MOST_PLACES]
+    if dropped := sum(_drop_rare(kept, period) for period in full):
         notes.append(f'{dropped} rare places left out, a period holds {MOST_PLACES}')
-    return [*(kept[key] for key in sorted(kept)), *future], notes
+    return [*(kept[place] for place in sorted(kept)), *future], notes
 
 
 def _put(cells: Cells, cell: Cell) -> None:
-    key = key_of(cell)
-    cells[key] = merged(cells[key], cell) if key in cells else cell
+    place = PLACE(cell)
+    cells[place] = merged(cells[place], cell) if place in cells else cell
 
 
 def _drop_rare(cells: Cells, period: tuple[int, int]) -> int:
     """Drop the places with the fewest stretches above the limit of a period; return how many."""
-    keys: Sequence[Key] = [key for key in cells if key[:2] == period]
-    rare = sorted(keys, key=lambda key: -cells[key].stretches)[MOST_PLACES:]
-    for key in rare:
-        del cells[key]
+    places = [place for place in cells if place[:2] == period]
+    rare = sorted(places, key=lambda place: -cells[place].stretches)[MOST_PLACES:]
+    for place in rare:
+        del cells[place]
     return len(rare)

@@ -14,7 +14,7 @@ import math
 
 from ballscrew_monitor.core.judgement import Code, Limits
 from ballscrew_monitor.health.bands import load_band, speed_band
-from ballscrew_monitor.health.lubrication import opposed
+from ballscrew_monitor.health.lubrication import looked_up, opposed
 from ballscrew_monitor.health.records import Baseline, Cell, Health, UsualWarning
 from surrogate.surface import Surface, Validity
 
@@ -35,12 +35,11 @@ def usual_warnings(
 
 
 def _broken(cell: Cell, surface: Surface, limits: Limits) -> list[Code]:
-    load = opposed(cell)
-    found = surface.lookup(abs(cell.speed), load, cell.temperature)
-    if found.validity is not Validity.VALID:
+    point = looked_up(surface, cell)
+    if point.validity is not Validity.VALID:
         return []
-    codes = [Code.RCS_HIGH] if found.rcs >= limits.rcs else []
-    if abs(load) >= limits.light_load and found.efficiency < limits.efficiency:
+    codes = [Code.RCS_HIGH] if point.rcs >= limits.rcs else []
+    if abs(opposed(cell)) >= limits.light_load and point.efficiency < limits.efficiency:
         codes.append(Code.EFFICIENCY_LOW)
     return codes
 

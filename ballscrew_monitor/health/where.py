@@ -31,13 +31,10 @@ from numpy.typing import NDArray
 from surrogate.units import MICRO, MILLI
 
 Array = NDArray[np.float64]
-SURE = 1.9
-"""Half width of the 99.9 % interval over that of 95 %."""
+SURE = 1.9  # half width of the 99.9 % interval over that of 95 %
 FEWEST_STEPS = 3
-LEAST_LOST = 2e-6
-"""Growth of the lost motion that is worth a note [m]."""
-ENCODERS = 0.5e-6
-"""Half width of what two encoders and the fit leave of a lost motion of zero [m]."""
+LEAST_LOST = 2e-6  # growth of the lost motion that is worth a note [m]
+ENCODERS = 0.5e-6  # half width of what encoders and fit leave of a lost motion of zero [m]
 LOST, LOST_CHANGE, LOST_TREND = 'lost motion', 'lost motion change', 'lost motion trend'
 NO_BASELINE = 'not known yet: it needs two logs in the baseline, and two after it'
 
@@ -63,21 +60,36 @@ def along_stroke(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequen
     level = int(cells['load_band'].max())
     steps = cells['speed_band'] >> (level - cells['load_band'])
     starts, first = np.unique(cells['start']), int(steps.min())
-    friction = _by_log(cells, starts, steps - first)
+    shape = len(starts), int(steps.max()) - first + 1
+    places = np.searchsorted(starts, cells['start']), steps - first
+    total, time = np.zeros(shape), np.zeros(shape)
+    np.add.at(total, places, cells['duration'] * np.log(cells['motor_torque']))
+    np.add.at(time, places, cells['duration'])
+    friction = np.where(time > 0.0, total / np.where(time > 0.0, time, 1.0), np.nan)
     before, now = _parts(starts, baseline)
     both = np.isfinite(friction[before]).sum(axis=0) >= 2
     both &= np.isfinite(friction[now]).any(axis=0) if now.any() else False
     if both.sum() < FEWEST_STEPS:
         return (), ''
     local = friction[:, both] - np.nanmedian(friction[:, both], axis=1, keepdims=True)
-    change, deviation, freedom = _change(local, before, now)
+    squares, freedom, means, doubt = 0.0, 0, [], 0.0
+    for part in (local[before], local[now]):
+        count = np.isfinite(part).sum(axis=0)
+        means.append(np.nansum(part, axis=0) / count)
+        squares += float(np.nansum((part - means[-1]) ** 2))
+        freedom += int(count.sum()) - len(count)
+        doubt = doubt + 1.0 / count
     if freedom < 1:
         return (), ''
-    reach = student(freedom) * deviation
-    spans = [span_of(first + at, level) for at in np.flatnonzero(both).tolist()]
+    change = means[1] - means[0]
+    reach = student(freedom) * (math.sqrt(squares / freedom) * np.sqrt(doubt))
+    spans = [
+        '{:.0f} to {:.0f} mm'.format(*(MILLI * end for end in span_of(first + at, level)))
+        for at in np.flatnonzero(both).tolist()
+    ]
     quantities = [
         quantity(
-            f'friction at {_span_text(span)}',
+            f'friction at {span}',
             '-',
             map(math.exp, (value, value - width, value + width)),
             f'over that of the whole stroke, {before.sum()} logs and {now.sum()} now',
@@ -90,7 +102,7 @@ def along_stroke(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequen
     worst = quantities[at]
     value, low, high = (100.0 * (end - 1.0) for end in (worst.value, worst.low, worst.high))
     return quantities, (
-        f'at {_span_text(spans[at])} of the stroke the friction has changed by {value:+.0f} % '
+        f'at {spans[at]} of the stroke the friction has changed by {value:+.0f} % '
         f'({low:+.0f} to {high:+.0f} %) against the rest of it: look at screw and guideway there'
     )
 
@@ -103,31 +115,31 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     lost, time = cells['backlash'], cells['start'] / DAY
     if len(lost) < 3:
         return [unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
-    spread = _spread(lost)
-    now = lost[-NOW:]
-    width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
+    spread, now, apart = _spread(lost), lost[-NOW:], time - time.mean()
     rests = f'{int(cells["stretches"].sum())} reversals in {len(lost)} logs'
-    apart = time - time.mean()
+
+    def measured(name: str, unit: str, value: float, width: float) -> Quantity:
+        ends = (value, value - width, value + width)
+        return quantity(name, unit, (MICRO * end for end in ends), rests)
+
+    width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
+    mean = measured(LOST, 'um', float(now.mean()), width)
     slope = float(apart @ lost / (apart @ apart)) * YEAR
-    slope_width = spread / math.sqrt(float(apart @ apart)) * YEAR
-    quantities = [
-        _micrometres(LOST, 'um', float(now.mean()), width, rests),
-        _micrometres(LOST_TREND, 'um/year', slope, slope_width, rests),
-    ]
-    before, after = (
-        (None, None) if baseline is None else _parts(cells['start'].astype(np.int64), baseline)
-    )
-    if before is None or after is None or before.sum() < 2 or after.sum() < 2:
-        return [*quantities, unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
-    change = float(lost[after].mean() - lost[before].mean())
-    width = spread * math.sqrt(1.0 / before.sum() + 1.0 / after.sum())
-    grown = _micrometres(LOST_CHANGE, 'um', change, width, rests)
-    quantities.insert(1, grown)
+    width = spread / math.sqrt(float(apart @ apart)) * YEAR
+    trend = measured(LOST_TREND, 'um/year', slope, width)
+    parts = () if baseline is None else _parts(cells['start'].astype(np.int64), baseline)
+    counts = [int(part.sum()) for part in parts]
+    if min(counts, default=0) < 2:
+        return [mean, trend, unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
+    before, after = (float(lost[part].mean()) for part in parts)
+    width = spread * math.sqrt(1.0 / counts[0] + 1.0 / counts[1])
+    change = after - before
+    grown = measured(LOST_CHANGE, 'um', change, width)
     if change - SURE * width <= LEAST_LOST:
-        return quantities, ''
-    return quantities, (
+        return [mean, grown, trend], ''
+    return [mean, grown, trend], (
         f'the lost motion at reversals has grown by {grown.value:.3g} um ({grown.low:.3g} to '
-        f'{grown.high:.3g} um) and is {quantities[0].value:.3g} um now: measure the backlash of '
+        f'{grown.high:.3g} um) and is {mean.value:.3g} um now: measure the backlash of '
         'nut and support bearings'
     )
 
@@ -155,42 +167,8 @@ def _spread(lost: Array) -> float:
     return student(freedom) * math.sqrt(float(np.sum(np.diff(lost) ** 2)) / (2.0 * freedom))
 
 
-def _by_log(cells: NDArray[Any], starts: NDArray[Any], steps: NDArray[Any]) -> Array:
-    """Return ln(friction) of logs by steps, NaN where a log has none; cells of a step by time."""
-    shape = len(starts), int(steps.max()) + 1
-    rows = np.searchsorted(starts, cells['start'])
-    total, time = np.zeros(shape), np.zeros(shape)
-    np.add.at(total, (rows, steps), cells['duration'] * np.log(cells['motor_torque']))
-    np.add.at(time, (rows, steps), cells['duration'])
-    return np.where(time > 0.0, total / np.where(time > 0.0, time, 1.0), np.nan)
-
-
 def _parts(starts: NDArray[np.int64], baseline: Baseline) -> tuple[Any, Any]:
     """Return which logs are of the baseline, and which are the last ones after it."""
     before = (starts >= baseline.begin) & (starts < baseline.end)
     after = np.flatnonzero(starts >= baseline.end)[-NOW:]
     return before, np.isin(np.arange(len(starts)), after)
-
-
-def _change(local: Array, before: Any, now: Any) -> tuple[Array, Array, int]:
-    """Return the change of each step, its standard deviation, and the degrees of freedom."""
-    squares, freedom, means, counts = 0.0, 0, [], []
-    for part in (before, now):
-        rows = local[part]
-        count = np.isfinite(rows).sum(axis=0)
-        mean = np.nansum(rows, axis=0) / count
-        squares += float(np.nansum((rows - mean) ** 2))
-        freedom += int(count.sum()) - len(count)
-        means.append(mean)
-        counts.append(count)
-    scatter = math.sqrt(squares / freedom) if freedom else math.nan
-    return means[1] - means[0], scatter * np.sqrt(1.0 / counts[0] + 1.0 / counts[1]), freedom
-
-
-def _span_text(span: tuple[float, float]) -> str:
-    return f'{span[0] * MILLI:.0f} to {span[1] * MILLI:.0f} mm'
-
-
-def _micrometres(name: str, unit: str, value: float, width: float, rests: str) -> Quantity:
-    ends = (value, value - width, value + width)
-    return quantity(name, unit, (MICRO * end for end in ends), rests)

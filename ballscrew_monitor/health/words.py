@@ -9,23 +9,26 @@ import enum
 import math
 from typing import Any
 
+from ballscrew_monitor.health.causes import BEARING_DRAG
 from ballscrew_monitor.health.change import LEAST_GAIN, LEAST_OFFSET, Marks
+from ballscrew_monitor.health.history import groups_of
 from ballscrew_monitor.health.records import (
     Cause,
     CauseCode,
     CellKind,
     Condition,
     Health,
+    LoadSource,
     Missing,
     Quantity,
 )
 from ballscrew_monitor.health.rows import DAY
+import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import to_json
 
-MOST_TOLD = 3
-"""Causes that are told together."""
-LEAST_WEIGHT = 0.05
-"""Weight of a cause that is told [-]: the others carry 95 %."""
+MOST_TOLD = 3  # causes that are told together
+LEAST_WEIGHT = 0.05  # of a cause that is told [-]: the others carry 95 %
 NOT_ASSESSED = 'nothing has been assessed yet'
 MISSING = {
     Missing.CLOCK: 'the clock was not set, or leapt',
@@ -37,16 +40,32 @@ MISSING = {
     Missing.MOTION: 'the axis did not move',
 }
 
+ONE_WAY = (
+    'no speed and load ran in both directions with a measured torque: log motion without load '
+    'forth and back'
+)
+TOO_LITTLE = (
+    'the measured torque is less than the load needs: check the lead, and sign and unit of torque '
+    'and load'
+)
+OIL = 'check grade and temperature of the oil; name a new baseline after an intended change of oil'
 ADVICE = {
-    CauseCode.PRELOAD_LOST: 'measure the backlash, and have the preload set or the nut replaced',
-    CauseCode.OIL_THINNER: 'check grade and temperature of the oil; name a new baseline after an '
-    'intended change of oil',
-    CauseCode.OIL_THICKER: 'check grade and temperature of the oil; name a new baseline after an '
-    'intended change of oil',
-    CauseCode.FILM_STARVED: 'lubricate now, and check the lubricator',
-    CauseCode.WIPER: 'look at wipers, covers, guideway and bearings',
-    CauseCode.TORQUE_CONSTANT: 'check torque constant and gear ratio',
+    'preload_lost': 'measure the backlash, and have the preload set or the nut replaced',
+    'oil_thinner': OIL,
+    'oil_thicker': OIL,
+    'film_starved': 'lubricate now, and check the lubricator',
+    'wiper': 'look at wipers, covers, guideway and bearings',
+    'bearing_play': 'measure the play of the support bearing, and have it set or replaced',
+    'torque_constant': 'check torque constant and gear ratio',
 }
+"""What to do, by the names of causes."""
+
+
+def cause_name(cause: Any) -> str:
+    """Return the name of a cause, be it a record or a message, '' for one of another version."""
+    if cause.size.name == BEARING_DRAG:
+        return 'bearing_play'
+    return next((code.name.lower() for code in CauseCode if code == cause.code), '')
 
 
 def verdict_of(
@@ -69,14 +88,16 @@ def verdict_of(
     date = f'since about {date_words(since)} ' if since else ''
     if drag.low * drag.high <= 0.0:
         return f'Axis {axis} {state}: {date}it changed, and is now back at {change}.'
-    return f'Axis {axis} {state}: {date}its friction is {lower_or_higher(drag)}; {_why(causes)}.'
+    certainty, likely = explained(causes)
+    why = certainty.value.format(', or '.join(cause.text for cause in likely))
+    return f'Axis {axis} {state}: {date}its friction is {lower_or_higher(drag)}; {why}.'
 
 
 def normal_answer(health: Health | None) -> str:
     """Return whether an axis is normal, or since when it has changed, in a few words."""
     if health is None:
         return f'not known yet: {NOT_ASSESSED}'
-    drag = next((one for one in health.quantities if one.name == 'drag change'), None)
+    drag = next((each for each in health.quantities if each.name == 'drag change'), None)
     if health.condition is Condition.NORMAL:
         return 'normal for this axis'
     if health.condition is Condition.UNKNOWN or drag is None:
@@ -124,23 +145,18 @@ def explained(causes: Sequence[Any]) -> tuple[Certainty, Sequence[Any]]:
     together; more than three are not told. One of less than `LEAST_WEIGHT` is not likely.
 
     """
-    told = [one for one in causes if not one.excluded and one.weight >= LEAST_WEIGHT]
-    if not 1 <= len(told) <= MOST_TOLD:
+    likely = [cause for cause in causes if not cause.excluded and cause.weight >= LEAST_WEIGHT]
+    if not 1 <= len(likely) <= MOST_TOLD:
         return Certainty.NONE, []
-    return Certainty.LIKELY if len(told) > 1 else Certainty.SURE, told
-
-
-def _why(causes: Sequence[Cause]) -> str:
-    certainty, told = explained(causes)
-    return certainty.value.format(', or '.join(one.text for one in told))
+    return Certainty.LIKELY if len(likely) > 1 else Certainty.SURE, likely
 
 
 def advice_of(condition: Condition, causes: Sequence[Cause]) -> str:
     """Return what to do about the likely causes, empty for nothing."""
     if condition not in (Condition.WORSE, Condition.SLIGHTLY_CHANGED):
         return ''
-    _, told = explained(causes)
-    return '; or '.join(dict.fromkeys(ADVICE[one.code] for one in told))
+    _, likely = explained(causes)
+    return '; or '.join(dict.fromkeys(ADVICE[cause_name(cause)] for cause in likely))
 
 
 def input_notes(marks: Marks) -> list[str]:
@@ -165,6 +181,10 @@ def input_notes(marks: Marks) -> list[str]:
 
 def missing_reason(cells: NDArray[Any]) -> str:
     """Return why the friction of an axis is not known."""
+    motion = cells[(cells['kind'] == CellKind.MOTION) & np.isfinite(cells['motor_torque'])]
+    known = motion[motion['load_source'] != LoadSource.DERIVED]
+    if len(known):
+        return f'not known: {TOO_LITTLE if groups_of(known, both=True)[0] else ONE_WAY}'
     reasons = set(cells['missing'][cells['kind'] == CellKind.NOTHING].tolist())
     for code, text in MISSING.items():
         if int(code) in reasons:
@@ -181,16 +201,16 @@ def health_record(health: Health) -> dict[str, Any]:
         'since_ns': health.since or None,
         'verdict': health.verdict,
         'advice': health.advice,
-        'quantities': {one.name: _quantity(one) for one in health.quantities},
+        'quantities': {each.name: _plain(each) for each in health.quantities},
         'causes': [
             {
-                'code': one.code.name.lower(),
-                'size': {'name': one.size.name, **_quantity(one.size)},
-                'weight': one.weight,
-                'excluded': one.excluded,
-                'text': one.text,
+                'code': cause.code.name.lower(),
+                'size': {'name': cause.size.name, **_plain(cause.size)},
+                'weight': cause.weight,
+                'excluded': cause.excluded,
+                'text': cause.text,
             }
-            for one in health.causes
+            for cause in health.causes
         ],
         'notes': list(health.notes),
     }
@@ -200,10 +220,6 @@ def health_record(health: Health) -> dict[str, Any]:
     return record
 
 
-def _quantity(quantity: Quantity) -> dict[str, Any]:
-    made = dataclasses.asdict(quantity)
-    del made['name']
-    return {
-        key: None if isinstance(value, float) and math.isnan(value) else value
-        for key, value in made.items()
-    }
+def _plain(quantity: Quantity) -> dict[str, Any]:
+    plain: dict[str, Any] = to_json(dataclasses.asdict(quantity))
+    return {key: value for key, value in plain.items() if key != 'name'}

@@ -7,9 +7,8 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
-from ballscrew_monitor.health.causes import BEARING_DRAG
 from ballscrew_monitor.health.records import CauseCode, Condition
-from ballscrew_monitor.health.words import ADVICE, explained
+from ballscrew_monitor.health.words import ADVICE, cause_name, explained
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
 from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
@@ -27,7 +26,6 @@ DATED = {
     int(Condition.SLIGHTLY_CHANGED): 'verdict_slight_since',
 }
 CHANGED = tuple(DATED)
-CAUSES = {int(code): code for code in CauseCode}
 Known = dict[str, HealthQuantity]
 """Quantities with an interval, by their names."""
 
@@ -56,11 +54,11 @@ def verdict_phrase(health: AxisHealth) -> Said:
 def advice_phrase(health: AxisHealth) -> Said:
     """Return what to do about the likely causes; an advice on oil or feed is free."""
     _, likely = explained(health.causes)
-    codes = [CAUSES.get(cause.code) for cause in likely]
-    if health.condition not in CHANGED or not codes or None in codes:
+    names = [cause_name(cause) for cause in likely]
+    if health.condition not in CHANGED or not names or '' in names:
         return free(health.advice) if health.advice else ''
     # Two causes may have one remedy, which is said once.
-    remedies = {ADVICE[code]: phrase(f'remedy_{code.name.lower()}') for code in codes if code}
+    remedies = {ADVICE[name]: phrase(f'remedy_{name}') for name in names}
     return functools.reduce(
         lambda first, second: phrase('either_or', first=first, second=second), remedies.values()
     )
@@ -79,11 +77,11 @@ def _why(health: AxisHealth, known: Known) -> Phrase:
 
 
 def _cause(cause: HealthCause, known: Known) -> Phrase:
-    code = CAUSES.get(cause.code)
-    if code is None:  # of another version
+    name = cause_name(cause)
+    if not name:  # of another version
         return free(cause.text)
-    size = known.get(PRELOAD, cause.size) if code is CauseCode.PRELOAD_LOST else cause.size
-    name = 'bearing_play' if size.name == BEARING_DRAG else code.name.lower()
+    lost = cause.code == CauseCode.PRELOAD_LOST
+    size = known.get(PRELOAD, cause.size) if lost else cause.size
     return phrase(f'change_{name}', **_interval(size))
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.health.assess import course, HealthSettings, without_order
+from ballscrew_monitor.health.bands import day_of, FIRST_DAY
 from ballscrew_monitor.health.baseline import since_days
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.detection import BASELINE_DAYS
@@ -100,10 +101,12 @@ class HistoryMaker:
     ) -> AxisHistory:
         """Return what came of all rows; `torque_is_load`: the map takes the torque for a load."""
         self._take(self._collector.finish())
-        cells = list(self._cells.values())
+        cells, bins = list(self._cells.values()), merged_bins(self._bins)
         if all(cell.direction == 0 for cell in cells):
             cells.append(nothing(self._first, self._missing(torque_is_load=torque_is_load)))
         cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
+        if day_of(self._first) < FIRST_DAY:
+            cells, bins = [nothing(self._first, Missing.CLOCK)], []
         return AxisHistory(
             axis=axis,
             surface=str(surface),
@@ -111,7 +114,7 @@ class HistoryMaker:
             first=self._first,
             last=self._last,
             cells=tuple(cells),
-            bins=tuple(merged_bins(self._bins)),
+            bins=tuple(bins),
             speed_allowed=settings.speed_allowed,
             machine=machine,
             log=self._log,

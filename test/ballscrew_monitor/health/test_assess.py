@@ -155,3 +155,23 @@ def test_a_programme_without_a_common_speed_is_not_compared(axis):
 def test_logs_without_motion_that_counts_say_why(axis, says, why, key):
     (found,) = axis.course([nothing(FIRST * DAY, why)])
     assert (found.condition, found.verdict) == (Condition.UNKNOWN, says(key))
+
+
+@pytest.mark.parametrize('factor', [1.0, 0.85])
+def test_torque_only_while_cutting_is_not_known(axis, says, factor):
+    """Under one load and one way, an error of the load is as good as a change of the friction."""
+    cells = axis.cells(30, lambda week, _: factor if week >= 20 else 1.0)
+    for cell in cells:
+        cell.axial_load, cell.load_band = -900.0, -8
+        cell.motor_torque += 900.0 * axis.surface.lead / (2.0 * np.pi)
+    last = axis.course([cell for cell in cells if cell.direction > 0])[-1]
+    assert (last.condition, last.verdict) == (Condition.UNKNOWN, says('only_cutting'))
+
+
+def test_a_torque_below_that_of_the_load_is_not_known(axis, says):
+    """As by twice the lead; half a load in each direction would be a friction below zero."""
+    cells = axis.cells(30, axial_load=0.0)
+    for cell in cells:
+        cell.axial_load, cell.load_band = -9000.0 * cell.direction, -16 * cell.direction
+    last = axis.course(cells)[-1]
+    assert (last.condition, last.verdict) == (Condition.UNKNOWN, says('too_little'))

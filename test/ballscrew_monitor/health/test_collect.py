@@ -9,8 +9,9 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
+from ballscrew_monitor.health.history import history_of
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.summary import add
+from ballscrew_monitor.health.summary import add, array_of
 from ballscrew_monitor.recordings.axis_run import AxisRows
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay_parts
@@ -110,3 +111,21 @@ def test_a_look_in_between_ends_no_stretch(motion, surface):
     last = collector.finish()
     assert last.stretches[0].duration == pytest.approx(5.6, abs=0.1)
     assert last.bins[0].time == pytest.approx(3.0)
+
+
+def test_a_torque_that_is_nan_for_a_while_leaves_the_friction_as_it_is(motion, surface):
+    """Half a minute forth and back, of which some seconds have no torque."""
+
+    def frictions(*lost):
+        rows = motion.then(motion.steady(15.0), motion.steady(15.0, -50.0, torque=-0.5))
+        for begin in lost:
+            rows['motor_torque'][begin : begin + 200] = math.nan
+        stretches, _ = in_blocks(Collector(surface), rows, [])
+        cells = {}
+        for stretch in stretches:
+            assert math.isfinite(stretch.motor_torque)
+            add(cells, stretch, motion.noon)
+        history = history_of(array_of(cells.values()), surface.lead)
+        return history.friction
+
+    assert frictions(300, 700, 1900) == pytest.approx(frictions())

@@ -3,8 +3,7 @@
 """The film's part in the life, severity of contact, and boundary running."""
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.damage import Rated
-from ballscrew_monitor.health.life import NO_RATING
+from ballscrew_monitor.health.life import NO_RATING, Rated
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
     lubrication_rate,

@@ -8,17 +8,11 @@ from ballscrew_monitor.health import mixed
 from ballscrew_monitor.health.mixed import (
     CORRELATION_TIME,
     estimate,
-    functional,
+    GRID,
     Grid,
-    grid,
     Logs,
-    posterior_of,
-    scatter_of,
-    shapes_of,
+    Model,
     SLOPE,
-    wander_of,
-    weighed,
-    with_shape,
 )
 import numpy as np
 import pytest
@@ -59,7 +53,7 @@ def only_pair(monkeypatch):
 
     def choose(scatter, wander):
         pair = Grid(np.array([scatter]), np.array([wander]), np.zeros(1))
-        monkeypatch.setattr(mixed, 'grid', lambda: pair)
+        monkeypatch.setattr(mixed, 'GRID', pair)
         return pair
 
     return choose
@@ -69,37 +63,38 @@ def test_a_shape_is_as_probable_as_its_density_says(only):
     """Twice: the second shape beside a first one that is held for true."""
     only(0.015, 0.01)
     logs = logs_of(np.random.default_rng(1).normal(0.0, 0.02, 20))
-    shapes, posterior = shapes_of(logs.time), posterior_of(logs, warm=True)
+    model = Model(logs)
+    shapes = model.shapes
     for first in (5, len(shapes.mean) - 3):
-        seen = weighed(posterior, shapes)
-        covariance = np.linalg.inv(posterior.inverse[0])
-        plain = density(posterior.rest, covariance)
+        weights = model.weights()
+        covariance = np.linalg.inv(model.inverse[0])
+        plain = density(model.rest, covariance)
         for which in (0, 20, 40, len(shapes.mean) - 1):
             column = shapes.column[:, which]
-            rest = posterior.rest - shapes.mean[which] * column
+            rest = model.rest - shapes.mean[which] * column
             more = covariance + shapes.deviation[which] ** 2 * np.outer(column, column)
             wanted = density(rest, more) - plain + shapes.prior[which]
-            ratio = math.log(seen.shapes[which] / seen.none)
+            ratio = math.log(weights.shapes[which] / weights.none)
             assert ratio == pytest.approx(wanted, abs=1e-6)
-        posterior = with_shape(posterior, shapes, first)
+        model.hold(first)
 
 
 def test_a_number_is_what_it_is_by_conditional_normal_distributions(only):
     """The mean and the deviation of the level of now, without a shape and with one."""
     pair = only(0.015, 0.02)
     logs = logs_of(wandering(np.random.default_rng(2), 20, 0.02))
-    shapes, posterior = shapes_of(logs.time), posterior_of(logs, warm=True)
-    seen = weighed(posterior, shapes)
+    model = Model(logs)
+    shapes = model.shapes
     share = np.where(np.arange(20) >= 16, 0.25, 0.0)
-    pull = posterior.signal @ share
-    found = functional(posterior, shapes, seen, pull, pull @ share, share @ shapes.column)
-    signal, noise = posterior.signal[0], np.linalg.inv(posterior.inverse[0]) - posterior.signal[0]
+    pull = model.signal @ share
+    level = model.mixture(model.weights(), pull, pull @ share, share @ shapes.column)
+    signal, noise = model.signal[0], np.linalg.inv(model.inverse[0]) - model.signal[0]
     for which, column in ((0, np.zeros(20)), (30, shapes.column[:, 29])):
         with_it = signal + shapes.deviation[29] ** 2 * np.outer(column, column)
         gain = share @ with_it @ np.linalg.inv(with_it + noise)
         left = share @ with_it @ share - gain @ with_it @ share
-        assert found.mean[0, which] == pytest.approx(gain @ posterior.rest, abs=1e-6)
-        assert found.deviation[0, which] == pytest.approx(math.sqrt(left), rel=1e-4)
+        assert level.mean[0, which] == pytest.approx(gain @ model.rest, abs=1e-6)
+        assert level.deviation[0, which] == pytest.approx(math.sqrt(left), rel=1e-4)
     assert pair.prior.size == 1
 
 
@@ -133,30 +128,30 @@ def kalman_likelihood(effect, scatter, wander):
     return total
 
 
-def test_the_covariance_is_that_of_a_state_that_a_kalman_filter_follows():
+def test_the_covariance_is_that_of_a_state_that_a_kalman_filter_follows(monkeypatch):
+    for other in ('LEVEL', 'RUNNING_IN'):
+        monkeypatch.setattr(mixed, other, 1e-9)
     effect = np.random.default_rng(5).normal(0.0, 0.02, 30)
     pairs = Grid(np.array([0.02, 0.01]), np.array([0.015, 0.03]), np.zeros(2))
-    logs = logs_of(effect)
-    matrices = wander_of(logs.time, pairs) + scatter_of(logs, pairs)
+    monkeypatch.setattr(mixed, 'GRID', pairs)
+    matrices = np.linalg.inv(Model(logs_of(effect)).inverse)
     for matrix, scatter, wander in zip(matrices, pairs.scatter, pairs.wander, strict=True):
         wanted = kalman_likelihood(effect, scatter, wander)
         assert density(effect, matrix) == pytest.approx(wanted, abs=1e-9)
 
 
 def pairs_of(effect):
-    logs = logs_of(effect)
-    seen = weighed(posterior_of(logs, warm=True), shapes_of(logs.time))
-    return seen.probability.sum(axis=1)
+    return Model(logs_of(effect)).weights().probability.sum(axis=1)
 
 
 def test_the_grid_is_weighed_towards_the_scatter_and_wander_that_are_there():
-    random, pairs = np.random.default_rng(7), grid()
+    random = np.random.default_rng(7)
     quiet = pairs_of(random.normal(0.0, 0.01, 60))
     loud = pairs_of(wandering(random, 60, 0.05) + random.normal(0.0, 0.02, 60))
     assert quiet.sum() == pytest.approx(1.0)
-    assert quiet @ pairs.scatter < 0.013
-    assert loud @ pairs.scatter > 0.015
-    assert loud @ pairs.wander > quiet @ pairs.wander + 0.005
+    assert quiet @ GRID.scatter < 0.013
+    assert loud @ GRID.scatter > 0.015
+    assert loud @ GRID.wander > quiet @ GRID.wander + 0.005
 
 
 @pytest.mark.parametrize(('scatter', 'wander'), [(0.01, 0.0), (0.02, 0.015), (0.03, 0.03)])

@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.health.detection import BASELINE_DAYS, baseline_of, now_of
 from ballscrew_monitor.health.mixed import (
     estimate,
-    grid,
+    GRID,
     Logs,
     MODEL_DOUBT,
     SLOPE,
@@ -81,7 +81,7 @@ def test_peers_narrow_the_interval_and_it_still_holds(families):
 
 
 def spread(slope=-0.014, deviation=0.001, pairs=None):
-    usual = np.exp(grid().prior)
+    usual = np.exp(GRID.prior)
     pairs = tuple((usual / usual.sum()).tolist()) if pairs is None else pairs
     return Spread(slope, deviation, pairs, GROUPS)
 

@@ -13,10 +13,10 @@ from ballscrew_monitor.health.summary import (
     aged,
     array_of,
     by_place,
-    key_of,
     merged,
     MOST_PLACES,
     nothing,
+    PLACE,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -76,7 +76,7 @@ def test_other_places_sources_and_logs_are_other_cells(motion):
     for change in changes:
         assert add(cells, motion.stretch(**change)) == ''
     assert len(cells) == len(changes)
-    assert all(key_of(cell) == key for key, cell in cells.items())
+    assert all(PLACE(cell) == key for key, cell in cells.items())
     assert by_place(cells.values()) == cells
     assert [one.kind for one in cells.values()][-1] == CellKind.STANDSTILL
 
@@ -166,7 +166,7 @@ def test_age_merges_and_loses_nothing_whenever_it_is_done(motion, cells, data, l
     once, notes = aged(many, motion.today + later)
     twice, _ = aged(aged(many, motion.today)[0], motion.today + later)
     assert totals(once) == pytest.approx(totals(many), rel=1e-6, abs=1e-6)
-    assert [key_of(one) for one in once] == [key_of(one) for one in twice]
+    assert [PLACE(one) for one in once] == [PLACE(one) for one in twice]
     assert notes == []
     for one in once:
         assert one.days == 1 or one.first_day % one.days == 0

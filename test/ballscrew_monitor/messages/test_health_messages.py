@@ -3,6 +3,8 @@
 """Health in a message, field by field, and what of it warns by the policy."""
 
 import math
+from pathlib import Path
+import re
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
@@ -27,6 +29,7 @@ import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 
+CAUSES = Path(__file__).resolve().parents[3] / 'msg_defs' / 'msg' / 'HealthCause.msg'
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 KNOWN = Quantity(
     name='drag change',
@@ -90,6 +93,9 @@ def test_without_a_baseline_its_times_are_zero():
 
 
 def test_codes_and_conditions_are_those_of_the_records():
+    declared = dict(re.findall(r'CAUSE_(\w+)=(\d+)', CAUSES.read_text(encoding='utf-8')))
+    codes = {'UNKNOWN': '0'} | {code.name: str(int(code)) for code in CauseCode}
+    assert declared == codes
     for code in CauseCode:
         assert getattr(msg.HealthCause, f'CAUSE_{code.name}') == code
     for condition in Condition:

@@ -125,6 +125,10 @@ def test_a_support_bearing_with_play_is_no_wiper(language):
     size = Quantity(name=BEARING_DRAG, unit='N m', value=-0.12, low=-0.2, high=-0.05)
     bearing = Cause(code=CauseCode.WIPER, size=size, weight=0.5, excluded=False, text='T')
     changed = Condition.WORSE, [bearing], quantity('drag change', -0.2), Quantity(name='preload')
-    why = verdict_phrase(message_of(*changed))['values']['why']
+    message = message_of(*changed)
+    assert 'wiper' not in message.advice
+    assert advice_phrase(message)['key'] == 'remedy_bearing_play'
+    assert english(advice_phrase(message)) == message.advice
+    why = verdict_phrase(message)['values']['why']
     assert why['values']['cause']['key'] == 'change_bearing_play'
-    assert 'change_bearing_play' in languages()[language]
+    assert {'change_bearing_play', 'remedy_bearing_play'} <= set(languages()[language])

@@ -5,10 +5,13 @@
 import dataclasses
 import json
 import math
+from types import SimpleNamespace
 
 from ballscrew_monitor.cli import main
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.records import Cell, Condition, Health, Quantity, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.judge.many import ROW
 from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.report.health_axes import assess_axes, logged_axes
 from ballscrew_monitor.report.health_command import days_of
@@ -17,6 +20,7 @@ from ballscrew_monitor.report.health_history import (
     by_axis,
     health_after,
     healths,
+    HistoryMaker,
     peers_among,
 )
 from ballscrew_monitor.report.health_part import health_chapter
@@ -25,9 +29,10 @@ from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.machines import axis_titles
 from ballscrew_monitor.report.many_logs import Workers
 from ballscrew_monitor.report.overview import overview_page
+import numpy as np
 import pytest
 from surrogate.files import to_json
-from surrogate.surface import shipped_surface
+from surrogate.surface import shipped_surface, Surface
 
 FIRST, MONTH = 20_000, 30
 
@@ -74,6 +79,23 @@ def history(limits, number, wiper):
         cells=tuple(cells),
         bins=(one,),
     )
+
+
+def test_a_log_of_a_clock_that_was_not_set_is_not_known_and_disturbs_no_other(
+    months, usual_limits, says
+):
+    rows = np.zeros(1000, ROW)
+    rows['stamp'] = 5 * SECOND + np.arange(1000) * (SECOND // 100)  # in 1970
+    rows['speed'], rows['motor_torque'], rows['temperature'] = 50.0, 0.5, 313.0
+    for name in ('motor_torque_source', 'axial_load_source', 'temperature_source', 'direction'):
+        rows[name] = 1
+    maker = HistoryMaker(Surface.load(shipped_surface()))
+    maker.add(rows)
+    settings = SimpleNamespace(limits=usual_limits, speed_allowed=False)
+    unset = maker.history('x', shipped_surface(), settings)
+    assert (len(unset.cells), unset.bins) == (1, ())
+    assert health_after(unset).verdict == says('clock_not_set')
+    assert healths([*months, unset]) == healths(months)
 
 
 def test_a_history_survives_json(months, usual_limits):
