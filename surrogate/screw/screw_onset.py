@@ -19,6 +19,7 @@ from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.surface.contact_onset import law_doubt
+from surrogate.surface.lookup import both_bands
 from surrogate.units import digits, GIGA, MICRO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -102,7 +103,7 @@ def onset_point(
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 
-def onset_band(
+def law_band(
     opened: Contacts, lubricant: Lubricant, load: float, temperature: float
 ) -> dict[str, Any]:
     """
@@ -137,6 +138,8 @@ def onset_record(
     calibrated the state in which that was done.
 
     """
+    from surrogate.screw.onset_bands import onset_bands  # which varies what is read here
+
     _check_place(lubricant, load, temperature)
     stated = screw.working_load is not None
     opened, states = Contacts.of(screw), {}
@@ -148,14 +151,14 @@ def onset_record(
     for state in [sheet.state] if alone else ['new', 'run_in']:
         raceway = with_raceway(screw, state=state)
         contacts = Contacts.of(raceway)
-        states[state] = onset_point(contacts, *place) | {
+        bands = onset_bands(raceway, *place)
+        states[state] = {
+            **onset_point(contacts, *place),
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
-            **onset_band(contacts, *place),
+            **law_band(contacts, *place),
+            'band': list(bands.whole),
+            **bands.record(),
         }
-    if len(states) > 1:
-        states['run_in']['speed_range_rad_s'] = onset_over_pressure(
-            screw, *place, run_in_range(screw)
-        )
     # The lower the pressure at which summits are cut, the more the load matters.
     raceway = with_raceway(screw, state=[*states][-1])
     loads = [factor * opened.working_load for factor in LOAD_FACTORS]
@@ -210,11 +213,12 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     )
     for state, found in record['states'].items():
         yield f'  {WORDS[state]:26} {_told(found)}'
+        yield from (f'  {"":26} {words}' for words in _narrowed(found))
     states = record['states'].values()
-    slowest = min(
-        one['band'][0] * min(one.get('speed_range_rad_s', [one['speed_rad_s']])) for one in states
+    slowest, fastest = (
+        pick(one['band'][end] * one['speed_rad_s'] for one in states)
+        for end, pick in enumerate((min, max))
     )
-    fastest = max(one['band'][1] * one['speed_rad_s'] for one in states)
     if fastest:
         yield (
             f'  Contact is likely below {digits(slowest / RPM)} rev/min and possible below '
@@ -238,15 +242,19 @@ def _told(found: Mapping[str, Any]) -> str:
         return 'no contact: raceway and ball are smooth'
     cut = found['cutting_pressure_Pa']
     low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
-    text = (
+    return (
         f'contact begins at {digits(found["speed_rad_s"] / RPM)} rev/min '
         f'({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
         f'cut at {GIGA * cut:g} GPa'
     )
-    if 'speed_range_rad_s' in found:
-        low, high = (speed / RPM for speed in found['speed_range_rad_s'])
-        text += f'; {digits(low)} to {digits(high)} rev/min over the range of that pressure'
-    return text
+
+
+def _narrowed(found: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what of the band the measurement leaves that narrows it most."""
+    for step in found['measure'][:1]:
+        left = both_bands(step['limit_band'], found['numerical_band'])
+        low, high = (digits(share * found['speed_rad_s'] / RPM) for share in left)
+        yield f'a measured {step["measurement"]} leaves {low} to {high} rev/min'
 
 
 def _over_load(record: Mapping[str, Any]) -> str:

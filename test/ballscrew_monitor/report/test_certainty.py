@@ -14,7 +14,7 @@ import pytest
 from surrogate.surface import shipped_surface, Surface
 
 SURFACE = Surface.load(shipped_surface())
-LEAST = min(*SURFACE.limit_band, *SURFACE.numerical_band)
+LEAST = SURFACE.onset_band[0]
 PERIOD, GAP = 10_000_000, 50_000_000  # [ns]
 LIMITS = Limits(
     rcs=0.01,

@@ -12,6 +12,9 @@ from surrogate.asperities.law import NOTHING
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.settings import FullSettings
+from surrogate.builder.sheets_onset import onset_of_sheets
+from surrogate.catalogue.screw import screw_of
+from surrogate.catalogue.words import CatalogueScrew
 from surrogate.ehl import Condition
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
@@ -21,9 +24,8 @@ from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import with_raceway
-from surrogate.screw.sensitivity import surface_bands
-from surrogate.surface import FIELDS, Surface, Validity
+from surrogate.screw.screw_onset import onset_record, with_raceway
+from surrogate.surface import FIELDS, onset_of_surface, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface.aims import rcs_tolerance
 from surrogate.surface_tools.describe import info_page, info_record
@@ -225,14 +227,23 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil, refused):
         build_full(heavy, oil, SETTINGS, None)
 
 
-def test_the_bands_are_those_of_the_sensitivity(data, screw, oil):
-    """Found before the nodes are solved; a calibration has its own."""
-    bands = surface_bands(screw, oil)
-    assert {name: data.header[name] for name in bands} == bands
-    calibrated = with_raceway(screw, calibrated='2026-11-24', onset_band=1.25)
-    found = surface_bands(calibrated, oil)
-    assert found['limit_band'] == [0.8, 1.25]
-    assert found['numerical_band'][1] < bands['numerical_band'][1]
+def test_build_point_and_onset_say_one_band_of_an_own_screw(oil, stand_in):
+    """Its Ra is a typical one; numbers, and the measurement that narrows them most."""
+    given = CatalogueScrew(
+        nominal_diameter=0.036, lead=0.012, nut='double', turns=3.5, dynamic_rating=30e3
+    )
+    own, kelvin = screw_of(given)[0], oil.reference_temperature
+    surface = Surface(build_full(own, oil, SETTINGS, stand_in.run))
+    of_sheets, of_file = onset_of_sheets(own, oil, kelvin), onset_of_surface(surface, kelvin)
+    state = onset_record(own, oil, 0.0, kelvin)['states'][own.roughness.state]
+    assert of_sheets.band == of_file.band == tuple(state['band'])
+    assert of_sheets.measure == of_file.measure
+    assert of_file.measure[0] == state['measure'][0]['measurement']
+    for name in ('limit_band', 'numerical_band', 'measure'):
+        assert surface.header[name] == state[name]
+    assert of_file.speed == pytest.approx(of_sheets.speed, rel=0.02)  # between two nodes
+    for found in (of_sheets, of_file):
+        assert f'; a measured {found.measure[0]} leaves ' in found.sentence()
 
 
 def test_info_says_where_contact_begins_and_what_was_reached(data, tmp_path):
