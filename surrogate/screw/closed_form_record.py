@@ -107,6 +107,7 @@ def page(record: Mapping[str, Any]) -> str:
         (
             'efficiency',
             f'{record["efficiency"]:.3f}'
+            + ' of the contacts' * ('typical_drag' in record)
             + (', load drives the screw' if record['back_driving'] else ''),
         ),
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
