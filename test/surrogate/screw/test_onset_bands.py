@@ -17,8 +17,9 @@ from surrogate.screw.onset_bands import (
     spread,
     unknown_band,
 )
+from surrogate.screw.onset_record import onset_page, onset_record
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import law_band, onset_page, onset_record, with_raceway
+from surrogate.screw.screw_onset import law_band, with_raceway
 from surrogate.screw.sensitivity import sensitivity_record
 from surrogate.screw.uncertain_inputs import INPUTS, ScrewCase
 from surrogate.units import RPM

@@ -16,14 +16,12 @@ from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.figures import figure_onset
+from surrogate.screw.onset_record import extrapolated, onset_page, onset_record
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import (
-    extrapolated,
     law_band,
     onset_over_working_load,
-    onset_page,
     onset_point,
-    onset_record,
     onset_speeds,
     run_in_range,
     with_raceway,

@@ -12,9 +12,6 @@ from surrogate.asperities.law import NOTHING
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.settings import FullSettings
-from surrogate.builder.sheets_onset import onset_of_sheets
-from surrogate.catalogue.screw import screw_of
-from surrogate.catalogue.words import CatalogueScrew
 from surrogate.ehl import Condition
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
@@ -24,8 +21,8 @@ from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_record, with_raceway
-from surrogate.surface import FIELDS, onset_of_surface, Surface, Validity
+from surrogate.screw.screw_onset import with_raceway
+from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface.aims import rcs_tolerance
 from surrogate.surface_tools.describe import info_page, info_record
@@ -225,25 +222,6 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil, refused):
     heavy = with_raceway(replace(screw, working_load=50e3), state='run_in')
     with pytest.raises(InputError, match='the mean pressure is 3.33 GPa, allowed is'):
         build_full(heavy, oil, SETTINGS, None)
-
-
-def test_build_point_and_onset_say_one_band_of_an_own_screw(oil, stand_in):
-    """Its Ra is a typical one; numbers, and the measurement that narrows them most."""
-    given = CatalogueScrew(
-        nominal_diameter=0.036, lead=0.012, nut='double', turns=3.5, dynamic_rating=30e3
-    )
-    own, kelvin = screw_of(given)[0], oil.reference_temperature
-    surface = Surface(build_full(own, oil, SETTINGS, stand_in.run))
-    of_sheets, of_file = onset_of_sheets(own, oil, kelvin), onset_of_surface(surface, kelvin)
-    state = onset_record(own, oil, 0.0, kelvin)['states'][own.roughness.state]
-    assert of_sheets.band == of_file.band == tuple(state['band'])
-    assert of_sheets.measure == of_file.measure
-    assert of_file.measure[0] == state['measure'][0]['measurement']
-    for name in ('limit_band', 'numerical_band', 'measure'):
-        assert surface.header[name] == state[name]
-    assert of_file.speed == pytest.approx(of_sheets.speed, rel=0.02)  # between two nodes
-    for found in (of_sheets, of_file):
-        assert f'; a measured {found.measure[0]} leaves ' in found.sentence()
 
 
 def test_info_says_where_contact_begins_and_what_was_reached(data, tmp_path):
