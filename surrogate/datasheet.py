@@ -130,6 +130,29 @@ class Checked:
                 _check_choice(where, spec, value)
 
 
+def check_likely(sheet: Checked, where: str, low: str, name: str, high: str) -> None:
+    """Raise InputError where fields `low` and `high` are one alone or do not hold that `name`d."""
+    specs = {spec.name: spec for spec in fields(sheet)}  # type: ignore[arg-type]
+    keys = {each: key_of(specs[each]) for each in (low, name, high)}
+    least, value, most = (getattr(sheet, each) for each in (low, name, high))
+    if least is most is None:
+        return
+    if least is None or most is None:
+        alone = keys[low] if most is None else keys[high]
+        raise InputError(
+            f'{where}: {alone} is given alone, allowed are both of {keys[low]} and {keys[high]} '
+            'or neither'
+        )
+    slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself
+    if not least / slack <= value <= most * slack:
+        rules = specs[name].metadata
+        shown = [f'{each / rules["factor"]:g}' for each in (value, least, most)]
+        raise InputError(
+            f'{where}: {keys[name]} is {shown[0]} {rules["unit"]}, allowed is {shown[1]} to '
+            f'{shown[2]} {rules["unit"]} ({keys[low]} to {keys[high]} of the sheet)'
+        )
+
+
 def read_yaml(path: Path) -> Any:
     """Return the plain values of a YAML file; raises InputError, also for a key twice."""
     try:

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 
 from surrogate.datasheet import (
     block,
+    check_likely,
     Checked,
     choice,
     count,
@@ -73,12 +74,15 @@ class Screw(Checked):
     None where not known; `working_load`, the largest axial load in operation [N], None where that
     which unloads the relieved nut stands for it; without `ball_roughness` the balls are smooth.
 
-    `dynamic_rating` of one nut [N], `free_length` of the screw between its bearings [m] and how
-    they `support` it are None where not stated. No contact depends on these three.
+    `typical_drag` [N m] is what such nuts have as a parasitic torque, with its likely range; it
+    stands beside the solves, None where the parasitic torque was identified. `dynamic_rating` of
+    one nut [N], `free_length` of the screw between its bearings [m] and how they `support` it are
+    None where not stated. No contact depends on these three.
 
     """
 
     SERVICE: ClassVar[tuple[str, ...]] = ('dynamic_rating', 'free_length', 'support')
+    LIKELY: ClassVar[tuple[str, ...]] = ('typical_drag_low', 'typical_drag', 'typical_drag_high')
 
     name: str = text(
         *NAME,
@@ -145,6 +149,21 @@ class Screw(Checked):
     )
     parasitic_torque_rate: float = quantity(
         'Nm_s', 1.0, 0.0, 1e3, default=0.0, means='the same in proportion to the speed'
+    )
+    typical_drag: float | None = quantity(
+        'Nm',
+        1.0,
+        0.0,
+        1e3,
+        default=None,
+        means='torque of seals, recirculation and balls that touch each other on typical nuts, '
+        'for the band of torque and efficiency alone; gone once it is identified',
+    )
+    typical_drag_low: float | None = quantity(
+        'Nm', 1.0, 0.0, 1e3, default=None, means='its lowest likely value'
+    )
+    typical_drag_high: float | None = quantity(
+        'Nm', 1.0, 0.0, 1e3, default=None, means='its highest likely value'
     )
     hysteresis_loss: float = quantity(
         '',
@@ -217,6 +236,7 @@ class Screw(Checked):
                 f'{largest:.4g} N: one pair of flanks carries 2.83 preloads as the other is '
                 f'relieved, and static_rating_kN is {self.static_rating * 1e-3:g} kN'
             )
+        self._check_drag()
         if (self.free_length is None) != (self.support is None):
             given, other = 'free_length_mm', 'support'
             if self.free_length is None:
@@ -239,22 +259,49 @@ class Screw(Checked):
                     f'their Rq of {self._ball_rms * 1e6:.3g} um'
                 )
 
+    def _check_drag(self) -> None:
+        """Refuse a typical drag without its range, or beside one that was identified."""
+        given = [getattr(self, name) is not None for name in self.LIKELY]
+        if any(given) and not all(given):
+            raise InputError(
+                'screw: typical_drag_Nm, typical_drag_low_Nm and typical_drag_high_Nm are given '
+                'in part, allowed are all three or none'
+            )
+        check_likely(self, 'screw', *self.LIKELY)
+        if any(given) and (self.parasitic_torque or self.parasitic_torque_rate):
+            raise InputError(
+                f'screw: typical_drag_Nm is given with parasitic_torque_Nm '
+                f'{self.parasitic_torque:g} N m, allowed is one of the two: an identified torque '
+                'takes the place of a typical one'
+            )
+
     def stated(self) -> dict[str, Any]:
         """
         Return the values by name on which a solve depends.
 
-        Of nuts, oversize balls alone have other contacts.
+        Of nuts, oversize balls alone have other contacts; a likely range that is absent leaves no
+        trace.
 
         """
         values = asdict(self)
         if self.nut != 'oversize':
             del values['nut']
+        for part, names in ((values, self.LIKELY), (values['roughness'], Roughness.LIKELY)):
+            for name in names:
+                if part[name] is None:
+                    del part[name]
         return {name: value for name, value in values.items() if name not in self.SERVICE}
 
     def service(self) -> dict[str, Any]:
         """Return the values by name that are stated for life, critical speed and buckling."""
         values = {name: getattr(self, name) for name in self.SERVICE}
         return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def likely_drag(self) -> tuple[float, float, float] | None:
+        """Least, typical and largest drag of such nuts [N m], None where it is identified."""
+        low, middle, high = (getattr(self, name) for name in self.LIKELY)
+        return None if middle is None else (low, middle, high)
 
     @property
     def _ball_rms(self) -> float:
@@ -372,13 +419,7 @@ class Lubricant(Checked):
                 f'kinematic_viscosity_40_mm2_s ({self.kinematic_viscosity_40 * 1e6:g} mm2/s)'
             )
         self._check_viscosity()
-        slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself
-        if not self.film_floor_low / slack <= self.film_floor <= self.film_floor_high * slack:
-            raise InputError(
-                f'lubricant: film_floor_nm is {self.film_floor * 1e9:g} nm, allowed is '
-                f'{self.film_floor_low * 1e9:g} to {self.film_floor_high * 1e9:g} nm '
-                '(film_floor_low_nm to film_floor_high_nm of the sheet)'
-            )
+        check_likely(self, 'lubricant', 'film_floor_low', 'film_floor', 'film_floor_high')
         if not (
             self.minimum_temperature <= self.reference_temperature <= self.maximum_temperature
         ):

@@ -1,11 +1,12 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Certainty of a verdict outside the zone: wherever in its bands the limit of RCS may lie.
+Certainty of a verdict outside the zone: wherever in its band the limit of RCS may lie.
 
-The bands are factors on the speed of the limit. A point in which asperities carry too much is
-surely outside if they also do at its speed over the least factor, else perhaps. Too low an
-efficiency is surely so. The zone itself knows nothing of this.
+The band is a pair of factors on the speed of the limit. A point in which asperities carry too much
+is surely outside if they also do at its speed over the least factor, else perhaps. Too low an
+efficiency is surely so: it is that of the contacts and of an identified drag, and a typical drag
+would lower it. The zone itself knows nothing of this.
 
 """
 
@@ -33,9 +34,8 @@ class Outside(enum.Enum):
 
 
 def least_factor(surface: Surface) -> float:
-    """Return the least factor of both bands on the speed of the limit [-], NaN without them."""
-    factors = *surface.limit_band, *surface.numerical_band
-    return math.nan if any(map(math.isnan, factors)) else min(factors)
+    """Return the least factor of the band on the speed of the limit [-], NaN without a band."""
+    return surface.onset_band[0]
 
 
 def surely_outside(rows: Rows, surface: Surface, limits: Limits) -> NDArray[np.bool_]:

@@ -247,7 +247,7 @@ def statuses(
                 _say(status, _stale(Fault.CLOCK_STANDS))
         parts[0].values += key_values(_answers(state, surface, health, advice))
         parts[0].values += key_values([(USUAL_EVENTS, ' '.join(map(str, usual)))])
-        parts[0].values += key_values(_lubrication_values(state))
+        parts[0].values += key_values([*_lubrication_values(state), *_with_drag(state, surface)])
         parts[1].values += key_values(_input_values(inputs))
     if defect:
         _say(parts[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
@@ -343,6 +343,17 @@ def outside_now(state: BallScrewState, surface: Surface) -> Outside:
         temperature=kelvin(point.temperature),
         efficiency=math.nan if light else result.efficiency,
     )
+
+
+def _with_drag(state: BallScrewState, surface: Surface) -> list[tuple[str, object]]:
+    """Return what the efficiency is with the drag of typical nuts, until it is identified."""
+    point = state.point
+    load = opposing_load(point.axial_load, Direction(point.direction))
+    drag = surface.with_typical_drag(state.result.friction_torque, load)
+    if not drag:
+        return []
+    low, middle, high = sorted(drag['efficiency'].values())
+    return [('Efficiency with typical drag [-]', f'{middle:.3g} ({low:.3g} to {high:.3g})')]
 
 
 def _lubrication_values(state: BallScrewState) -> list[tuple[str, object]]:

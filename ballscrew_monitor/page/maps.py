@@ -130,10 +130,10 @@ def map_of(
 
 
 def _bands(field: Field, surface: Surface, limits: Limits) -> list[MapLine]:
-    """Return low and high edge of the limit of RCS in each band that the surface knows."""
+    """Return low and high edge of the limit of RCS, by all causes and by the numerics alone."""
     return [
         map_line(field, field.rcs, limits.rcs, kind, '', factor=factor)
-        for kind, band in zip(BANDS, (surface.limit_band, surface.numerical_band), strict=True)
+        for kind, band in zip(BANDS, (surface.onset_band, surface.numerical_band), strict=True)
         for factor in band
         if math.isfinite(factor)
     ]

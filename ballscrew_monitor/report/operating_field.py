@@ -86,7 +86,7 @@ def sample(
     heats = np.full(across.size, kelvin(temperature))
     answers = look_up_many(surface, across, along, heats)
     shaped = {name: answers[name].reshape(LOADS, SPEEDS) for name in NAMES}
-    return Field(speed=speed / RPM, load=load, band=surface.limit_band, **shaped)
+    return Field(speed=speed / RPM, load=load, band=surface.onset_band, **shaped)
 
 
 def judged_speeds(surface: Surface, standstill: float) -> tuple[float, float]:

@@ -7,8 +7,9 @@ from surrogate.builder.closed_form import default_settings
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.onset_bands import onset_bands
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_band, onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.surface.contact_onset import (
     contact_onset,
     ContactOnset,
@@ -17,8 +18,6 @@ from surrogate.surface.contact_onset import (
     ZoneLimits,
 )
 
-BY_THE_LAW = ' by the law alone'
-"""What the band of a point leaves out: what is not known of screw, oil and temperature."""
 EFFICIENCY = np.vectorize(efficiency, otypes=[float])
 
 
@@ -31,7 +30,7 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
     """
     settings, opened = default_settings(screw), Contacts.of(screw)
     slowest, fastest = settings.speed_range
-    low, high = onset_band(opened, lubricant, 0.0, temperature)['band']
+    bands = onset_bands(screw, lubricant, 0.0, temperature)
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:
@@ -47,8 +46,8 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         temperature=temperature,
         coldest=min(lubricant.minimum_temperature, temperature),
         reach=fastest,
-        band=(low, high),
-        doubt=BY_THE_LAW,
+        band=bands.whole,
+        measure=bands.narrowed,
         fastest=fastest,
         oil=lubricant.name,
         viscosity=lubricant.kinematic_viscosity_40,

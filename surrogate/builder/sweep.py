@@ -140,7 +140,10 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
         if not re.fullmatch(NAME[0], name):
             raise InputError(f'{where}: name must be {NAME[1]}')
         if changes := {key: value for key, value in entry.items() if key != 'name'}:
-            roughness = changed_sheet(screw.roughness, changes, where)
+            sheet = screw.roughness
+            if 'rms_um' in changes:  # a stated Rq, not a typical one
+                sheet = replace(sheet, rms_low=None, rms_high=None)
+            roughness = changed_sheet(sheet, changes, where)
             check_waves(roughness, where)
             variant = replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
         variants.append((name, variant))

@@ -23,6 +23,7 @@ class Process:
     """Raceway of a process: Ra [m], lay, D n [m rad/s], the first two with range and source."""
 
     ra: float
+    ra_range: tuple[float, float]
     ra_words: str
     lay: Lay
     lay_words: str
@@ -32,6 +33,7 @@ class Process:
 PROCESSES = {
     'ground': Process(
         ra=0.16e-6,
+        ra_range=(0.1e-6, 0.4e-6),
         ra_words='0.16, 0.1 to 0.4; a maker: below 0.2; a published study: 0.1',
         lay='longitudinal',
         lay_words='the wheel leaves ridges along the thread',
@@ -39,6 +41,7 @@ PROCESSES = {
     ),
     'rolled': Process(
         ra=0.3e-6,
+        ra_range=(0.1e-6, 0.8e-6),
         ra_words='0.3, 0.1 to 0.8, assumed',
         lay='longitudinal',
         lay_words='assumed: ground dies print their ridges along the thread',
@@ -46,6 +49,7 @@ PROCESSES = {
     ),
     'whirled': Process(
         ra=0.3e-6,
+        ra_range=(0.2e-6, 0.8e-6),
         ra_words='0.3, 0.2 to 0.8, assumed',
         lay='transverse',
         lay_words='assumed: edges between successive cuts lie across the thread',
@@ -79,10 +83,11 @@ def typical_roughness(given: CatalogueScrew) -> Iterator[str]:
     """Yield in a sentence that the Ra is a typical one, where none is given."""
     process = process_of(given)
     if given.ra is None:
+        low, high = PROCESSES[process].ra_range
         yield (
             f'roughness: Ra {MICRO * PROCESSES[process].ra:g} um is typical of {process} raceways '
-            'and not measured; the onset of contact follows it, and no band has its range: '
-            '--ra-um states it'
+            f'({MICRO * low:g} to {MICRO * high:g}) and not measured; the onset of contact '
+            'follows it, and its band holds this range: --ra-um narrows it'
         )
 
 
@@ -90,8 +95,14 @@ def raceway_of(given: CatalogueScrew) -> dict[str, Noted]:
     """Return the roughness of a raceway, its long cut-off always stated."""
     process = PROCESSES[process_of(given)]
     ra = stated(given.ra, typical(process.ra, process.ra_words))
+    likely = {
+        name: derived(end / RA_OVER_RQ, f'1.25 Ra, {words} likely')
+        for name, end, words in zip(Roughness.LIKELY, process.ra_range, ('lowest', 'highest'))
+        if given.ra is None
+    }
     return {
         'rms': derived(ra.value / RA_OVER_RQ, f'1.25 Ra, {ra.note}'),
+        **likely,
         'cutoff_long': stated(
             given.cutoff_long, typical(0.25e-3, '0.08 to 0.8: as Ra was measured')
         ),

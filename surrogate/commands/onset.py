@@ -36,7 +36,7 @@ def add_onset_command(subparsers: Any) -> None:
 
 
 def _onset(args: argparse.Namespace) -> int:
-    from surrogate.screw.screw_onset import onset_page, onset_record
+    from surrogate.screw.onset_record import onset_page, onset_record
 
     screw, lubricant = load_inputs(args)
     if args.plot:

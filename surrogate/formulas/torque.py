@@ -12,6 +12,8 @@ import math
 import sys
 from typing import Any
 
+DRAGS = 'low', 'typical', 'high'
+"""Values of a drag that was not identified."""
 SMALLEST = sys.float_info.min
 """Ideal torque below which a load counts as no load [N m]: its inverse overflows."""
 
@@ -64,6 +66,24 @@ def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -
     return bool(driving_torque(friction_torque, opposing_load, lead) < 0)
 
 
+def with_typical_drag(
+    friction_torque: float, opposing_load: float, lead: float, drag: tuple[float, ...]
+) -> dict[str, dict[str, float]]:
+    """
+    Return friction torque and efficiency as they are with a typical drag, by its range.
+
+    Torque [N m], opposing load [N], lead [m]; `drag` [N m] is the least, typical and largest one.
+
+    """
+    torques = [friction_torque + each for each in drag]
+    values = {
+        'drag_Nm': list(drag),
+        'friction_torque_Nm': torques,
+        'efficiency': [efficiency(each, opposing_load, lead) for each in torques],
+    }
+    return {name: dict(zip(DRAGS, row, strict=True)) for name, row in values.items()}
+
+
 def torque_constant_friction(
     opposing_force: float,
     assisting_force: float,
@@ -95,3 +115,31 @@ def drag_torque_catalogue(preload: float, lead: float, helix_angle: float) -> fl
 
     """
     return 0.05 / math.sqrt(math.tan(helix_angle)) * preload * lead / (2 * math.pi)
+
+
+def friction_torque_jungnickel_2010(
+    balls: int,
+    normal_force: float,
+    *,
+    speed: float,
+    pitch_radius: float,
+    ball_radius: float,
+    helix_angle: float,
+    kinematic_viscosity: float,
+    density: float,
+) -> float:
+    """
+    Return the friction torque of the contacts of a preloaded double nut [N m].
+
+    9.16 N G^-0.2 W^-0.516 U^0.512 Q r / cos(alpha): Jungnickel 2010, (9.49), as the source of
+    thermca has it, where a seal doubles it. Loaded balls of both nuts, normal force [N], screw
+    speed [rad/s], radii [m], angle [rad], oil [m2/s], [kg/m3].
+
+    """
+    modulus, cosine = 2.31e11, math.cos(helix_angle)
+    material = 1.29e-7 * kinematic_viscosity**0.204 * modulus
+    load = normal_force / (modulus * ball_radius**2)
+    viscosity = density * kinematic_viscosity
+    moving = viscosity * speed * pitch_radius / (2 * modulus * ball_radius * cosine)
+    coefficient: float = 9.16 * material**-0.2 * load**-0.516 * moving**0.512
+    return balls * coefficient * normal_force * pitch_radius / cosine

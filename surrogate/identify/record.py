@@ -192,6 +192,9 @@ def identified_screw(
         source=f'{screw.source.split(PROVENANCE)[0].rstrip()} {_provenance(run, contacts, fit)}',
         parasitic_torque=fit.value('parasitic_torque'),
         parasitic_torque_rate=fit.value('parasitic_torque_rate'),
+        typical_drag=None,
+        typical_drag_low=None,
+        typical_drag_high=None,
         roughness=rough,
     )
 

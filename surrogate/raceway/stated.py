@@ -3,9 +3,9 @@
 """Roughness of raceway and ball as a datasheet of a screw states it, by the standard."""
 
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import ClassVar, Literal
 
-from surrogate.datasheet import Checked, choice, quantity, text
+from surrogate.datasheet import check_likely, Checked, choice, quantity, text
 from surrogate.files import InputError
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.raceway.standards import BALL_RA, ball_rms
@@ -26,13 +26,16 @@ class Roughness(RoughnessSpectrum):
     `state` says whether the raceway is new or has run in, and `traced` in which of the two the
     profile was traced. No summit carries more than the `hardness` [Pa]; `run_in_pressure` [Pa]
     stands for yield and mild wear of running in together, with its lowest and highest likely
-    value. Boundary friction coefficient [-].
+    value. Boundary friction coefficient [-]. Rq lies between `rms_low` and `rms_high` [m] where it
+    was not measured.
 
     `onset_factor` is the onset speed of contact over that which the topography tells [-]. One that
     was fitted on the machine has the day, `calibrated`, and the factor within which nine of ten
     lie, `onset_band` [-].
 
     """
+
+    LIKELY: ClassVar[tuple[str, ...]] = ('rms_low', 'rms_high')
 
     state: State = choice(
         'run_in',
@@ -73,6 +76,18 @@ class Roughness(RoughnessSpectrum):
     )
     run_in_high: float = quantity(
         'GPa', 1e9, 0.5, 20.0, default=5e9, means='its highest likely value, likewise'
+    )
+    rms_low: float | None = quantity(
+        'um',
+        1e-6,
+        0.0,
+        10.0,
+        default=None,
+        means='lowest likely Rq where none was measured, for the band of the onset alone; with '
+        '`rms_high_um`',
+    )
+    rms_high: float | None = quantity(
+        'um', 1e-6, 0.0, 10.0, default=None, means='highest likely Rq, likewise'
     )
     asperity_friction: float = quantity(
         '', 1.0, 0.0, 1.0, means='boundary friction coefficient, 0.1 for mineral oil on steel'
@@ -116,6 +131,7 @@ class Roughness(RoughnessSpectrum):
                 'roughness: traced is run_in and state is new, allowed is state: run_in for a '
                 'profile that was traced after running in'
             )
+        check_likely(self, 'roughness', 'rms_low', 'rms', 'rms_high')
         if (self.calibrated is None) != (self.onset_band is None):
             alone = 'calibrated' if self.onset_band is None else 'onset_band'
             raise InputError(

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point of the closed-form tier as a record, and the page of a record of either tier."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 import math
 import time
 from typing import Any
@@ -86,16 +86,33 @@ def _deviation(deviation: float) -> str:
     return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
 
 
+def drag_rows(record: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the row of efficiency and torque with a typical drag, where it is not identified."""
+    if 'typical_drag' not in record:
+        return
+    texts = []
+    for key, words, unit in (
+        ('efficiency', 'efficiency', ''),
+        ('friction_torque_Nm', 'friction torque', ' N m'),
+        ('drag_Nm', 'drag', ' N m'),
+    ):
+        low, middle, high = sorted(record['typical_drag'][key].values())
+        texts.append(f'{words} {middle:.3g} ({low:.3g} to {high:.3g}){unit}')
+    yield 'with typical drag', ', '.join(texts)
+
+
 def page(record: Mapping[str, Any], *, verbose: bool = False) -> str:
     """Return a record as a page of text in workshop units; `verbose` with ranges of formulas."""
     rows = [
         (
             'efficiency',
             f'{record["efficiency"]:.3f}'
+            + ' of the contacts' * ('typical_drag' in record)
             + (', load drives the screw' if record['back_driving'] else ''),
         ),
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
         ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
+        *drag_rows(record),
         ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
         (
             'asperity wear',

@@ -31,6 +31,7 @@ from surrogate.plotting.style import (
     MAP,
     new_figure,
     ORANGE,
+    PURPLE,
     SKY,
     VERMILION,
     YELLOW,
@@ -38,7 +39,7 @@ from surrogate.plotting.style import (
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
-from surrogate.screw.sensitivity import EFFICIENCY_SPEED, ONSET, shown, TORQUE
+from surrogate.screw.sensitivity import BANDS, EFFICIENCY_SPEED, ONSET, shown, TORQUE
 from surrogate.screw.solve import ScrewSolution
 from surrogate.units import GIGA, MICRO, MILLI, NANO, RPM, ZERO_CELSIUS
 
@@ -62,8 +63,8 @@ PANELS = {
     EFFICIENCY_SPEED: ('Efficiency falls to 0.85', 'speed [rev/min]', RPM),
 }
 """Title, label and unit [SI] of the quantities that are drawn."""
-BANDS = {'unknown_band': ('not known', GREY), 'numerical_band': ('numerics', SKY)}
-"""Words and colours of the bands of the onset."""
+BAND_COLOURS = GREY, SKY, PURPLE
+"""Of the bands of the onset."""
 COLOURS = {'low': BLUE, 'high': ORANGE}
 """Colours of the ends of an input."""
 
@@ -207,14 +208,10 @@ def _onset_rows(
     around = np.clip(record['temperature_K'] + np.array(AROUND), *warm).tolist()
     for state, stated in record['states'].items():
         opened = Contacts.of(with_raceway(screw, state=state))
-        least, most = stated.get('speed_range_rad_s', [stated['speed_rad_s']] * 2)
         for kelvin in dict.fromkeys(around):
             speed = onset_point(opened, lubricant, record['load_N'], kelvin)['speed_rad_s']
-            # Another temperature moves all speeds of a state alike.
-            ratio = speed / stated['speed_rad_s'] if speed else 0.0
             low, high = stated['band']
-            name = f'{STATES[state]}, {kelvin - ZERO_CELSIUS:.0f} °C'
-            yield name, low * least * ratio, high * most * ratio
+            yield f'{STATES[state]}, {kelvin - ZERO_CELSIUS:.0f} °C', low * speed, high * speed
 
 
 def draw_sensitivity(folder: Path, record: Mapping[str, Any]) -> Path:
@@ -244,12 +241,11 @@ def figure_sensitivity(record: Mapping[str, Any]) -> Figure:
     # Below the bars of the onset, its bands.
     onset = record['stated'][ONSET] / RPM
     every[0].axhline(-0.5, color='black', linewidth=0.8)
-    for place, (name, (_, shade)) in enumerate(BANDS.items()):
+    for place, (name, shade) in enumerate(zip(BANDS.values(), BAND_COLOURS, strict=True)):
         low, high = (factor * onset for factor in record[name])
         every[0].barh(-1 - place, high - low, left=low, color=shade, height=0.7)
     every[0].set_yticks(
-        range(-len(BANDS), len(rows)),
-        [words for words, _ in BANDS.values()][::-1] + [_label(row) for row in rows],
+        range(-len(BANDS), len(rows)), [*BANDS][::-1] + [_label(row) for row in rows]
     )
     marks = [Patch(color=colour, label=f'input is {end}') for end, colour in COLOURS.items()]
     every[-1].legend(handles=marks, loc='lower right')

@@ -73,7 +73,10 @@ KEYS = {
     'comparators': 'constant friction, catalogue drag, a second film formula',
     'wall_s': 'wall time',
     'contact_onset': 'where contact begins: `sentence`, `speed_rad_s`, `speed_range_rad_s`, '
+    '`measure` (the measurement that narrows it most), `measured_range_rad_s` (what that leaves), '
     '`fastest_speed_rad_s`, `temperature_K`, `optimal_zone`',
+    'typical_drag': 'only with a typical drag on the sheet: `drag_Nm`, `friction_torque_Nm` and '
+    '`efficiency` with it, each `low`, `typical`, `high` by the drag',
 }
 """Keys of a point of either tier, as `ballscrew point --json` prints it."""
 CONTACT_KEYS = {
@@ -156,7 +159,16 @@ def point_record(
         'contact_angle_B_rad': angles[1],
         'contacts': contacts,
         'comparators': _comparators(opened, point, formulas.contacts[0]),
+        **_with_drag(screw, point, float(result.friction_torque)),
     }
+
+
+def _with_drag(screw: Screw, point: OperatingPoint, friction_torque: float) -> dict[str, Any]:
+    """Return torque and efficiency with a typical drag, nothing where it is identified."""
+    if screw.likely_drag is None:
+        return {}
+    place = friction_torque, point.opposing_load, screw.lead
+    return {'typical_drag': torque.with_typical_drag(*place, screw.likely_drag)}
 
 
 def _heating_factor(

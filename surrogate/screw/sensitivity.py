@@ -1,12 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Sensitivity of onset, friction torque and zone to each input, one at a time, and two bands of it.
-
-One band holds what is not known of screw and oil, the other what the law and the lookup are off
-by. They are never merged: measurements narrow the first alone.
-
-"""
+"""Sensitivity of onset, friction torque and zone to each input, one at a time."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 import math
@@ -14,17 +8,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import FILM_POWER, SLOPE
 from surrogate.files import InputError
 from surrogate.formulas import torque
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
+from surrogate.screw.onset_bands import bands_of, spread
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_band
-from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
-from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
+from surrogate.screw.uncertain_inputs import INPUTS, ScrewCase, Varied
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.contact_onset import law_doubt
+from surrogate.surface.lookup import both_bands
 from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -35,8 +29,8 @@ AROUND = 2.5
 """Factor about the onset within which RCS passes the limit of the zone [-]."""
 SPEEDS = 60
 """Speeds among which a limit of the zone is looked for [-]."""
-INTERPOLATION = RCS_RELATIVE_TOLERANCE / (-SLOPE * FILM_POWER)
-"""Logarithm of the speed by which a surface may be off at the limit of RCS [-]."""
+BANDS = {'not known': 'limit_band', 'numerics': 'numerical_band', 'both': 'band'}
+"""Bands of a record in words."""
 KEYS = {
     'screw': 'name of the sheet',
     'oil': 'name of the sheet',
@@ -48,11 +42,11 @@ KEYS = {
     'inputs': 'the largest effect on the onset first: `key`, `low`, `stated`, `high` in the '
     'unit of the key, `reason`, `measured`, `refused`, `onset_factors`, `at_low`, '
     '`at_high`',
-    'unknown_band': 'least and largest onset over the stated one by what is not known',
-    'numerical_band': 'the same by the law of contact',
+    'band': 'least and largest onset over the stated one',
+    'limit_band': 'the same by what is not known alone',
+    'numerical_band': 'the same by law and lookup alone',
+    'measure': 'the two measurements that narrow `limit_band` most, each with what is left of it',
     'law_doubt': 'where the law is beyond the marches; else empty',
-    'measure': 'the two measurements that narrow `unknown_band` most, each with the band that is '
-    'left',
 }
 """Keys of the record."""
 
@@ -81,7 +75,8 @@ def sensitivity_record(
     for done, varied in enumerate(used):
         rows.append(_row(varied, case, stated))
         progress(done + 1, len(used))
-    rows.sort(key=lambda row: _spread(row['onset_factors']), reverse=True)
+    rows.sort(key=lambda row: spread(row['onset_factors']), reverse=True)
+    bands = bands_of(case, [(row['measured'], row['onset_factors']) for row in rows])
     return {
         'screw': screw.name,
         'oil': lubricant.name,
@@ -90,12 +85,11 @@ def sensitivity_record(
         'temperature_K': point.temperature,
         'stated': stated,
         'inputs': rows,
-        'unknown_band': _without(rows),
-        'numerical_band': numerical_band(case),
+        'band': list(bands.whole),
+        **bands.record(),
         'law_doubt': law_doubt(
             rms=screw.roughness.rms, calibrated=screw.roughness.onset_band is not None
         ),
-        'measure': _narrowed(rows),
     }
 
 
@@ -161,86 +155,6 @@ def _fastest(speed: Array, spare: Array) -> float:
     return float(speed[k] * (speed[k + 1] / speed[k]) ** share)
 
 
-def _spread(factors: Sequence[float]) -> float:
-    """Return how far the onset moves between the ends, as a logarithm [-]; a NaN is most."""
-    logs = np.log([*factors, 1.0])
-    return float(np.nan_to_num(logs.max() - logs.min(), nan=math.inf))
-
-
-def unknown_band(factors: Sequence[Sequence[float]]) -> list[float]:
-    """
-    Return the least and the largest onset speed over the stated one by what is not known [-].
-
-    The inputs are independent, so the logarithms of their `factors` at both ends [-] add up as
-    squares, each side for itself; NaN where one is not known.
-
-    """
-    logs = np.log(np.reshape(factors, (-1, 2)))
-    low, high = np.minimum(logs.min(axis=1), 0.0), np.maximum(logs.max(axis=1), 0.0)
-    return [
-        math.exp(-np.hypot.reduce(low, initial=0.0)),
-        math.exp(np.hypot.reduce(high, initial=0.0)),
-    ]
-
-
-def _without(rows: Sequence[Mapping[str, Any]], *measured: str) -> list[float]:
-    """Return the band of inputs of which some are `measured`."""
-    known = ('', *measured)
-    return unknown_band([row['onset_factors'] for row in rows if row['measured'] not in known])
-
-
-def _narrowed(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the measurement that narrows the band most, then the next, with what is left."""
-    done: list[dict[str, Any]] = []
-    for _ in range(2):
-        names = [step['measurement'] for step in done]
-        left = {row['measured']: _without(rows, *names, row['measured']) for row in rows}
-        best = min(left, key=lambda name: _spread(left[name]))
-        done.append({'measurement': best, 'unknown_band': left[best]})
-    return done
-
-
-def numerical_band(case: ScrewCase, interpolation: float = 0.0) -> list[float]:
-    """
-    Return the least and the largest onset speed over the stated one by law and lookup [-].
-
-    Nine of ten marched strips lie within that of the law, which a calibration takes out;
-    `interpolation` of a surface is the logarithm of a speed [-].
-
-    """
-    place = case.lubricant, case.point.opposing_load, case.point.temperature
-    law = [1.0, 1.0]
-    if not case.roughness.onset_band:
-        law = onset_band(Contacts.of(case.screw), *place)['band']
-    low, high = (math.hypot(math.log(factor), interpolation) for factor in law)
-    return [math.exp(-low), math.exp(high)]
-
-
-def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
-    """
-    Return both bands at the preload and the reference temperature, as a surface has them.
-
-    Of the inputs that take seconds only those count that change the band. A calibrated onset has
-    the band of its calibration.
-
-    """
-    point = OperatingPoint(speed=0.0, load=0.0, temperature=lubricant.reference_temperature)
-    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
-    numerics = numerical_band(case, INTERPOLATION)
-    calibrated = screw.roughness.onset_band
-    if calibrated:
-        return {'limit_band': [1 / calibrated, calibrated], 'numerical_band': numerics}
-    ends = [
-        (varied, varied.bounds(case) or ()) for varied in INPUTS if varied.name not in LEFT_OUT
-    ]
-    factors = [
-        [varied.at(case, value).onset / case.onset for value in pair]
-        for varied, pair in ends
-        if pair
-    ]
-    return {'limit_band': unknown_band(factors), 'numerical_band': numerics}
-
-
 def sensitivity_page(record: Mapping[str, Any]) -> str:
     """Return the lines that a person reads."""
     return '\n'.join(_lines(record))
@@ -259,7 +173,7 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         values = ['-' if row[end] is None else shown(row[end]) for end in ENDS]
         cells = _cells(row['at_low'], row['at_high'])
         yield _line(row['key'], values, cells) + f'  {row["refused"] or row["reason"]}'
-    for words, name in (('not known', 'unknown_band'), ('numerics', 'numerical_band')):
+    for words, name in BANDS.items():
         low, high = record[name]
         yield (
             f'  {words:10} contact begins at {low:.2g} to {high:.2g} times the stated speed: '
@@ -267,8 +181,8 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         )
     if record['law_doubt']:
         yield f'  {"law":10} {record["law_doubt"]}'
-    for word, step in zip(('measure', 'then'), record['measure'], strict=True):
-        low, high = step['unknown_band']
+    for word, step in zip(('measure', 'then'), record['measure'], strict=False):
+        low, high = both_bands(step['limit_band'], record['numerical_band'])
         yield f'  {word:10} {step["measurement"]}: {low:.2g} to {high:.2g} times is left'
 
 

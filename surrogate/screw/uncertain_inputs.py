@@ -92,6 +92,14 @@ class Varied:
         return case.changed(self.part, **dict.fromkeys((self.name, *self.also), value))
 
 
+def _heights(case: ScrewCase) -> Ends:
+    """Return the likely Rq of a typical raceway, or that by which traces of one differ."""
+    low, high = case.roughness.rms_low, case.roughness.rms_high
+    if low is None or high is None:
+        low, high = case.roughness.rms / 1.1, 1.1 * case.roughness.rms
+    return low, high
+
+
 def _floors(case: ScrewCase) -> Ends:
     return case.lubricant.film_floor_low, case.lubricant.film_floor_high
 
@@ -136,19 +144,22 @@ INPUTS = (
     Varied('lubricant', 'viscosity', 'width of an ISO 3448 grade', SAMPLE, times=1.1),
     Varied('lubricant', 'film_floor', 'range of the oil sheet', RUN, ends=_floors, also=FLOORS),
     Varied('lubricant', 'film_factor', 'grease or little oil leave 0.7', RUN, times=1 / 0.7),
-    Varied('roughness', 'rms', 'traces of a raceway differ by 10 %', TRACE, times=1.1),
+    Varied('roughness', 'rms', 'its range, or traces differ by 10 %', TRACE, ends=_heights),
     Varied('roughness', 'fractal_dimension', 'fits to traces differ by 0.1', TRACE, plus=0.1),
     Varied('roughness', 'rms_slope', 'traces of a raceway differ by 20 %', TRACE, times=1.2),
     Varied('roughness', 'cutoff_long', 'not stated: rows beside it', TRACE, ends=_cutoffs),
     Varied('roughness', 'run_in_pressure', 'lowest, to not run in', TRACE, ends=_pressures),
-    Varied('roughness', 'hardness', '58 to 64 HRC', 'hardness of the raceway', ends=_hardness),
-    Varied('screw', 'preload', 'setting and wear', 'torque without load', times=1.2),
+    Varied('roughness', 'hardness', '58 to 64 HRC, in no band', ends=_hardness),
+    Varied('screw', 'preload', 'setting and wear, in no band', times=1.2),
     Varied(
-        'screw', 'conformity_screw', 'grinding', 'contour', plus=0.01, also=('conformity_nut',)
+        'screw', 'conformity_screw', 'grinding, in no band', plus=0.01, also=('conformity_nut',)
     ),
     Varied('screw', 'working_load', 'half and double, in no band', ends=_working_loads),
     Varied('roughness', 'cutoff_short', 'scatter of tiles, in no band', times=2.0),
 )
-"""Inputs with their ranges: those of the sheets if they state any, else a usual spread."""
-LEFT_OUT = ('hardness', 'preload', 'conformity_screw', 'working_load', 'cutoff_short')
-"""Inputs that take seconds and are in no band or hardly move it: a surface leaves them out."""
+"""
+Inputs with their ranges: those of the sheets if they state any, else a usual spread.
+
+Those in no band move the onset by less than a fifth, or have no measurement.
+
+"""

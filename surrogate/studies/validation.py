@@ -4,7 +4,7 @@
 Published values beside ours: the record of all comparisons, SI units, and its tables.
 
 Our numbers are those of the nominal screw with ISO VG 68 at the temperature of its sheet, without
-axial load, from the functions that solve points and surfaces.
+axial load, from the functions that solve points and surfaces, and efficiencies of shipped sizes.
 
 """
 
@@ -17,9 +17,11 @@ from typing import Any
 
 import numpy as np
 from surrogate.asperities.running_in import running_tiles
+from surrogate.catalogue.screw import typical_drag
 from surrogate.ehl import Condition, Settings, solve_contact
 from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
-from surrogate.formulas import film
+from surrogate.formulas import film, torque
+from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.line import (
     amplitude_reduction_venner_1997,
     central_film_line,
@@ -40,6 +42,7 @@ from surrogate.screw.screw_onset import (
     with_raceway,
 )
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
+from surrogate.studies import drag
 from surrogate.studies.curves import Array, markdown_table
 from surrogate.studies.tasks import OIL, SCREW
 from surrogate.units import RPM
@@ -56,6 +59,8 @@ WIDTHS = (1.3, 2.0, 3.0, 6.0)
 """Half widths of the oil across the track over the semi-axis [-]; the last fills the groove."""
 FAST, SLOW = 600.0, 100.0
 """Screw speeds at which torques are compared [rev/min]."""
+DRAG_SPEEDS = (150.0, 600.0, 2000.0)
+"""Screw speeds at which the contacts are held against a formula [rev/min]."""
 THIN_FILMS = (0.05, 0.1)
 """Film ratios at which the share of the load on the film is compared [-]."""
 NEWTONIAN = 1e8
@@ -252,12 +257,37 @@ def drag_torque(case: ValidationCase) -> list[float]:
     return [case.solved(SLOW, ISOTHERMAL).friction_torque]
 
 
+def contacts_over_formula(case: ValidationCase) -> list[float]:
+    """Return the friction torque of the contacts over that of a published formula [-]."""
+    return [
+        case.solved(rpm, ISOTHERMAL).friction_torque
+        / torque.friction_torque_jungnickel_2010(
+            2 * case.screw.loaded_balls_per_nut,
+            case.load,
+            speed=rpm * RPM,
+            pitch_radius=case.screw.pitch_radius,
+            ball_radius=0.5 * case.screw.ball_diameter,
+            helix_angle=helix_angle(case.screw),
+            kinematic_viscosity=case.lubricant.kinematic_viscosity_40,
+            density=case.lubricant.density,
+        )
+        for rpm in DRAG_SPEEDS
+    ]
+
+
+def sealed_drag(case: ValidationCase) -> list[float]:
+    """Return the friction torque of the contacts and of a typical drag [N m]."""
+    return [case.solved(FAST, ISOTHERMAL).friction_torque + typical_drag(case.screw)[1]]
+
+
 OURS: dict[str, Callable[[ValidationCase], list[float]]] = {
     number.__name__: number
     for number in (
         *(waves_over_curve, short_wave, film_ratio_at_onset, load_on_film, run_in_speeds),
         *(run_in_height, film_parameter_at_onset, rolling_over_formula),
-        *(rough_rolling_over_formula, drag_torque),
+        *(rough_rolling_over_formula, drag_torque, contacts_over_formula, sealed_drag),
+        *(drag.efficiency_with_drag, drag.efficiency_of_load, drag.efficiency_over_load),
+        drag.stribeck_branches,
     )
 }
 """Our numbers by the names that the published values give them."""

@@ -9,7 +9,7 @@ slower: the speed of the onset goes with one over the viscosity and with a power
 
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 import math
 from typing import Any
@@ -66,18 +66,19 @@ class ContactOnset:
     """
     Speed [rad/s] at which contact begins without a load at a temperature [K], 0 if it never does.
 
-    `band`: between which factors of it that lies, NaN where not known, by what `doubt` says;
-    `fastest`, the speed that the screw allows, and up to which a zone is looked for, `reach`
-    [rad/s]. Without a zone contact must begin `slower`, a factor [-], as it does at `colder` [K],
-    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the
-    raceway [m], and whether its onset is `calibrated`.
+    `band`: between which factors of it that lies, NaN where not known, and between which if that
+    was measured which narrows it most, by name and band, None where nothing does; `fastest`, the
+    speed that the screw allows, and up to which a zone is looked for, `reach` [rad/s]. Without a
+    zone contact must begin `slower`, a factor [-], as it does at `colder` [K], NaN if at no
+    temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the raceway [m], and
+    whether its onset is `calibrated`.
 
     """
 
     speed: float
     temperature: float
     band: tuple[float, float] = (NAN, NAN)
-    doubt: str = ''
+    measure: tuple[str, tuple[float, float]] | None = None
     fastest: float
     reach: float
     oil: str
@@ -95,8 +96,7 @@ class ContactOnset:
         if self.speed:
             between = ''
             if math.isfinite(self.band[0]):
-                low, high = (_rounded(factor * self.speed / RPM) for factor in self.band)
-                between = f' ({low} to {high}{self.doubt})'
+                between = f' ({self._between(self.band)}{self._remedy()})'
             begins = (
                 f'Contact begins at {self._speed(self.speed, as_feed)}{between} '
                 f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
@@ -112,10 +112,23 @@ class ContactOnset:
             'sentence': f'{self.sentence()}.',
             'speed_rad_s': self.speed,
             'speed_range_rad_s': [factor * self.speed for factor in self.band],
+            'measure': self.measure and self.measure[0],
+            'measured_range_rad_s': self.measure
+            and [factor * self.speed for factor in self.measure[1]],
             'fastest_speed_rad_s': self.fastest,
             'temperature_K': self.temperature,
             'optimal_zone': self.zone,
         }
+
+    def _between(self, band: tuple[float, float]) -> str:
+        return ' to '.join(_rounded(factor * self.speed / RPM) for factor in band)
+
+    def _remedy(self) -> str:
+        """Say what a measurement leaves of the band."""
+        if self.measure is None:
+            return ' by its calibration' if self.calibrated else ''
+        name, left = self.measure
+        return f'; a measured {name} leaves {self._between(left)}'
 
     def _speed(self, speed: float, as_feed: bool) -> str:
         turns = f'{_rounded(speed / RPM)} rev/min'
@@ -223,8 +236,8 @@ def onset_of_surface(
         temperature=min(max(wanted, coldest), warmest),
         coldest=coldest,
         reach=reach,
-        band=surface.limit_band,
-        doubt=_unknown(screw['roughness']),
+        band=surface.onset_band,
+        measure=surface.onset_measure,
         fastest=fastest,
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
@@ -232,15 +245,6 @@ def onset_of_surface(
         calibrated=screw['roughness']['onset_band'] is not None,
         lead=surface.lead,
     )
-
-
-def _unknown(raceway: Mapping[str, Any]) -> str:
-    """Return by what the band of a surface comes about, and the measurement that narrows it."""
-    if raceway['onset_band']:
-        return ' by its calibration'
-    if (raceway['state'], raceway['traced']) == ('run_in', 'new'):
-        return f' by running in, oil and temperature; {TRACE} narrows it most'
-    return f' by oil and temperature; {SLOW_TORQUE} narrows it most'
 
 
 def _has(

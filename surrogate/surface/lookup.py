@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from surrogate.formulas.torque import with_typical_drag
 from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
@@ -99,6 +100,19 @@ class Surface:
         """Least and largest limit of RCS in speed over that in force by law and lookup [-]."""
         return self._band('numerical_band')
 
+    @property
+    def onset_band(self) -> tuple[float, float]:
+        """Least and largest limit of RCS in speed over that in force, by all of it [-]."""
+        return both_bands(self.limit_band, self.numerical_band)
+
+    @property
+    def onset_measure(self) -> tuple[str, tuple[float, float]] | None:
+        """Measurement that narrows that band most, and what it leaves [-], None for none."""
+        for step in self.header.get('measure', ()):
+            low, high = step['limit_band']
+            return str(step['measurement']), both_bands((low, high), self.numerical_band)
+        return None
+
     def _band(self, name: str) -> tuple[float, float]:
         low, high = self.header.get(name, (math.nan, math.nan))
         return float(low), float(high)
@@ -117,6 +131,21 @@ class Surface:
     def lead(self) -> float:
         """Lead of the screw [m]."""
         return float(self.array_tables.lead)
+
+    def with_typical_drag(
+        self, friction_torque: float, opposing_load: float
+    ) -> dict[str, dict[str, float]]:
+        """
+        Return torque and efficiency with the drag of typical nuts, empty where it is identified.
+
+        Friction torque without it [N m], opposing load [N]; as `torque.with_typical_drag`.
+
+        """
+        screw = self.header['inputs']['screw']
+        if screw.get('typical_drag') is None:
+            return {}
+        drag = tuple(float(screw[f'typical_drag{end}']) for end in ('_low', '', '_high'))
+        return with_typical_drag(friction_torque, opposing_load, self.lead, drag)
 
     @property
     def reference_temperature(self) -> float:
@@ -241,3 +270,9 @@ class Surface:
 def _solve_of(pull: Correction) -> tuple[float, float, float]:
     """Return what tells one solve from another; it may have pulled two cells."""
     return pull.speed, pull.opposing_load, pull.temperature
+
+
+def both_bands(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    """Return the band of two independent causes [-]: squares of logarithms add up, each side."""
+    low, high = (math.hypot(*(math.log(band[end]) for band in (one, other))) for end in (0, 1))
+    return math.exp(-low), math.exp(high)

@@ -61,6 +61,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         },
         'contact_onset': onset_of_surface(surface).record(),
         'formula_warnings': surface_warnings(data),
+        'onset_band': data.header.get('limit_band') and list(surface.onset_band),
         'limit_band': data.header.get('limit_band'),
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
@@ -143,7 +144,11 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _quality(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what is known of the accuracy, errors, spreads over strips, and the provenance."""
-    for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
+    for name, words in (
+        ('onset_band', 'both'),
+        ('limit_band', 'what is not known'),
+        ('numerical_band', 'the numerics'),
+    ):
         if record[name] is not None:
             low, high = record[name]
             yield (

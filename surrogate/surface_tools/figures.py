@@ -76,7 +76,7 @@ def cut(surface: Surface, temperature: float) -> Slice:
         for name in names
     }
     light = LIGHT_LOAD * surface.preload
-    bands = {'dashed': surface.limit_band, 'dotted': surface.numerical_band}
+    bands = {'dashed': surface.onset_band, 'dotted': surface.numerical_band}
     return Slice(speed=speed / RPM, load=load, fields=fields, light=light, bands=bands)
 
 
@@ -157,7 +157,7 @@ def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
 def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
     values = part.fields['rcs']
     norm = LogNorm(1e-4, 1.0)
-    words = zip(part.bands.items(), ('not known', 'numerics'), strict=True)
+    words = zip(part.bands.items(), ('its band', 'numerics alone'), strict=True)
     title = f'RCS, line: {RCS_LIMIT}' + ''.join(
         f', {style}: {text}' for (style, band), text in words if math.isfinite(band[0])
     )

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Answers of a surface for operating points: a record, a page, and a table for a table."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 import csv
 import io
 import math
 from typing import Any
 
 from surrogate.files import InputError
+from surrogate.formulas.torque import DRAGS
 from surrogate.parameters import OperatingPoint
 from surrogate.surface import regime_of, Surface, Validity
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
@@ -16,6 +17,7 @@ from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 COLUMNS = ('speed_rpm', 'load_N', 'temperature_degC')
 """Columns of a table of points; the last may be missing."""
+DRAG_KEY = 'typical_drag'
 SPREAD_OF = ('friction_torque', 'rcs')
 
 
@@ -23,6 +25,7 @@ def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
     """Look up one point and return it as plain numbers, SI, NaN with a reason where unknown."""
     answer = surface.lookup(abs(point.speed), point.opposing_load, point.temperature)
     known = answer.validity is Validity.VALID
+    drag = surface.with_typical_drag(answer.friction_torque, point.opposing_load)
     return {
         'tier': surface.tier,
         'screw': surface.screw_name,
@@ -42,10 +45,28 @@ def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
         **{derived_key(name, 'stderr'): getattr(answer, f'{name}_stderr') for name in SPREAD_OF},
         'driving_torque_Nm': answer.driving_torque,
         'back_driving': answer.back_driving,
+        **{
+            f'{DRAG_KEY}_{end}_{key}': value
+            for key, row in drag.items()
+            for end, value in row.items()
+        },
         'regime': regime_of(answer.film_ratio).word,
         'worst_contact': WORST_CONTACTS[answer.worst_contact] if known else '',
         'reason': _reason(surface, answer.validity),
     }
+
+
+def _drag_line(record: dict[str, Any]) -> Iterator[str]:
+    """Yield efficiency and torque with a typical drag, where it is not identified."""
+    if f'{DRAG_KEY}_low_drag_Nm' not in record:
+        return
+    torque, share = (
+        '{1:.4g} ({0:.3g} to {2:.3g})'.format(
+            *sorted(record[f'{DRAG_KEY}_{end}_{key}'] for end in DRAGS)
+        )
+        for key in ('friction_torque_Nm', 'efficiency')
+    )
+    yield f'  with typical drag    efficiency {share}, friction torque {torque} N m'
 
 
 def _reason(surface: Surface, validity: Validity) -> str:
@@ -80,6 +101,7 @@ def query_page(record: dict[str, Any]) -> str:
         [
             *lines,
             f'  driving torque       {record["driving_torque_Nm"]:.4g} N m{driving}',
+            *_drag_line(record),
             f'  regime               {record["regime"]}',
             f'  worst contact        {record["worst_contact"]}',
         ]

@@ -100,7 +100,7 @@ class ConstantSurface:
     oil_name = 'water'
     preload = 1000.0
     lead = 0.01
-    limit_band, numerical_band = (0.75, 1.5), (0.8, 1.25)
+    limit_band, numerical_band, onset_band = (0.75, 1.5), (0.8, 1.25), (0.7, 1.6)
     speed_range = (0.1, 100.0)
     load_range = (-4000.0, 4000.0)
     temperature_range = (283.15, 353.15)
@@ -108,6 +108,10 @@ class ConstantSurface:
     corrections = ()
     parasitic_torque = parasitic_torque_rate = torque_error = 0.0
     torque_low, torque_high = -math.inf, math.inf
+
+    @staticmethod
+    def with_typical_drag(friction_torque, opposing_load):
+        return {}
 
     def __init__(self, **numbers):
         self.scan_loads = np.linspace(*self.load_range, SCANNED)

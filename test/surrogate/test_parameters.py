@@ -106,6 +106,24 @@ def test_what_no_contact_depends_on_leaves_no_trace_among_the_inputs(screw):
     assert rated.service() == {'dynamic_rating': 25e3, 'free_length': 1.0, 'support': 'fixed_free'}
 
 
+DRAG = {'typical_drag_low': 0.1, 'typical_drag': 0.3, 'typical_drag_high': 0.9}
+
+
+def test_a_typical_drag_has_its_range_until_it_is_identified(screw, refused):
+    """Absent it leaves no trace among the inputs; beside an identified torque it has no sense."""
+    assert screw.likely_drag is None
+    assert not set(screw.stated()) & set(DRAG)
+    sheet = replace(screw, **DRAG)
+    assert sheet.likely_drag == (0.1, 0.3, 0.9)
+    assert sheet.stated() == screw.stated() | DRAG
+    with refused('drag_in_part'):
+        replace(screw, typical_drag=0.3)
+    with refused('drag_range'):
+        replace(screw, **DRAG | {'typical_drag_low': 0.4})
+    with refused('drag_identified'):
+        replace(sheet, parasitic_torque=0.2)
+
+
 MISTAKES = [
     ('lead_mm: 10.0\n', '', 'missing_lead_mm'),
     ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown_friction_name'),

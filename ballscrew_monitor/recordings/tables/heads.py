@@ -54,6 +54,7 @@ NO_NUMBER = frozenset(
 BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I)
 """A factor of a time, where a row of factors says no more."""
 USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
+LONGEST_GAP = 100.0  # times the usual step, after the first time of a table
 FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
@@ -261,7 +262,7 @@ class _Block:
         for count in (2, 1):
             long = [cells for cells in columns if len(cells) >= count + FOLLOWING // 2]
             time = next((cells for cells in long if _goes_on(cells[count:])), None)
-            if time and BARE_FACTOR.fullmatch(time[0]) and not _goes_on(time[count - 1 :]):
+            if time and BARE_FACTOR.fullmatch(time[0]) and not _follows(time, count):
                 return count
         return 0
 
@@ -288,6 +289,12 @@ def _goes_on(cells: Sequence[str]) -> bool:
     steps = sorted(later - before for before, later in zip(times, times[1:]))
     least, most = (part * steps[len(steps) // 2] for part in USUAL)
     return least > 0.0 and least <= steps[0] and steps[-1] <= most
+
+
+def _follows(cells: Sequence[str], count: int) -> bool:
+    """Return True if times that rise evenly from a place on do so a gap after the cell before."""
+    times = [*map(_number, cells[count - 1 :])]
+    return 0.0 < times[1] - times[0] < LONGEST_GAP * (times[-1] - times[1]) / (len(times) - 2)
 
 
 def _is_data(kinds: Sequence[str]) -> bool:

@@ -19,8 +19,8 @@ from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.onset_bands import onset_bands
 from surrogate.screw.opened import Contacts
-from surrogate.screw.sensitivity import surface_bands
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import SurfaceData
@@ -43,9 +43,10 @@ def build_full(
     nodes = surface_nodes(opened, lubricant, settings)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # While workers solve; a raceway may not bear the lowest pressure of its range.
-        waiting = beside.submit(surface_bands, screw, lubricant)
+        place = 0.0, lubricant.reference_temperature
+        waiting = beside.submit(onset_bands, screw, lubricant, *place)
         data = _surface(opened, lubricant, settings, nodes, run)
-        bands = waiting.result()
+        bands = waiting.result().record()
     points = held_out_points(Surface(data), screw, settings)
     chains = {
         f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)

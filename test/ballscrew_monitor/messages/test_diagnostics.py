@@ -333,6 +333,19 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place, says)
     assert all(status.message != sentence for status in made[1:])
 
 
+def test_a_typical_drag_is_told_beside_the_efficiency_that_is_judged(core):
+    """As the band that it makes of it; a surface whose drag is identified has none."""
+    assert 'Efficiency with typical drag [-]' not in values_of(
+        after(core, LOAD, SPEED)['Lubrication']
+    )
+    surface = core.surface()
+    surface.with_typical_drag = lambda friction, load: {
+        'efficiency': {'low': 0.9, 'typical': 0.8, 'high': 0.5}
+    }
+    values = values_of(after(core, LOAD, SPEED, surface=surface)['Lubrication'])
+    assert values['Efficiency with typical drag [-]'] == '0.8 (0.5 to 0.9)'
+
+
 def test_values_carry_their_unit(core):
     made = after(core, LOAD, SPEED)
     values = values_of(made['Lubrication'])

@@ -96,7 +96,7 @@ def test_lines_are_named_and_bands_come_in_pairs(surface, limits, page_parts):
         assert arrays[line['array']].shape[1] == 2
     edges = [arrays[line['array']] for line in record['lines'] if line['kind'] == maps.BANDS[0]]
     middle = next(arrays[line['array']] for line in record['lines'] if line['kind'] == 'rcs')
-    for edge, factor in zip(edges, surface.limit_band, strict=True):
+    for edge, factor in zip(edges, surface.onset_band, strict=True):
         np.testing.assert_allclose(edge[:, 0], factor * middle[:, 0])
 
 

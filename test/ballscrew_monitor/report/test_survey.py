@@ -30,7 +30,7 @@ LIMITS = Limits(
     clear_delay=0,
     hysteresis=0.1,
 )
-LEAST = min(*SURFACE.limit_band, *SURFACE.numerical_band)
+LEAST = SURFACE.onset_band[0]
 
 
 def survey_of(*blocks):

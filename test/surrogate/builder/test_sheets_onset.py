@@ -6,13 +6,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from surrogate.builder.full.build import build_full
+from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.sheets_onset import EFFICIENCY, onset_of_sheets
+from surrogate.catalogue.screw import screw_of
+from surrogate.catalogue.words import CatalogueScrew
 from surrogate.formulas.torque import efficiency
+from surrogate.screw.onset_record import onset_record
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.contact_onset import RMS_POWER
 
+SETTINGS = FullSettings(
+    speed_range=(0.5, 100.0),
+    load_range=(-2000.0, 2000.0),
+    temperature_range=(313.15, 333.15),
+    speed_nodes=6,
+    temperature_nodes=2,
+    held_out=1,
+    load_cells=1,
+)
 WARM = 368.15  # [K], of no zone with the nominal sheets
 
 
@@ -22,10 +36,10 @@ def found(screw, oil):
 
 
 def test_it_is_the_onset_of_the_surface_of_these_sheets(screw, oil, surface_data):
-    """On a node of its temperatures; their bands differ: that of the sheets is of the law."""
+    """On a node of its temperatures; a surface of formulas states no band."""
     theirs = onset_of_surface(Surface(surface_data), surface_data.temperature[0])
     ours = onset_of_sheets(screw, oil, surface_data.temperature[0])
-    alike = {'band': theirs.band, 'doubt': theirs.doubt, 'speed': 0.0}
+    alike = {'band': theirs.band, 'measure': theirs.measure, 'speed': 0.0}
     assert replace(ours, **alike) == replace(theirs, **alike)
     assert ours.speed == pytest.approx(theirs.speed, rel=1e-9)
 
@@ -69,3 +83,22 @@ def test_efficiencies_of_many_loads_are_those_of_one(screw):
     loads = np.array([-500.0, 0.0, 500.0])
     single = [efficiency(0.1, load, screw.lead) for load in loads]
     assert EFFICIENCY(0.1, loads, screw.lead).tolist() == single
+
+
+def test_build_point_and_onset_say_one_band_of_an_own_screw(oil, stand_in, small_tiles):
+    """Its Ra is a typical one; numbers, and the measurement that narrows them most."""
+    given = CatalogueScrew(
+        nominal_diameter=0.036, lead=0.012, nut='double', turns=3.5, dynamic_rating=30e3
+    )
+    own, kelvin = screw_of(given)[0], oil.reference_temperature
+    surface = Surface(build_full(own, oil, SETTINGS, stand_in.run))
+    of_sheets, of_file = onset_of_sheets(own, oil, kelvin), onset_of_surface(surface, kelvin)
+    state = onset_record(own, oil, 0.0, kelvin)['states'][own.roughness.state]
+    assert of_sheets.band == of_file.band == tuple(state['band'])
+    assert of_sheets.measure == of_file.measure
+    assert of_file.measure[0] == state['measure'][0]['measurement']
+    for name in ('limit_band', 'numerical_band', 'measure'):
+        assert surface.header[name] == state[name]
+    assert of_file.speed == pytest.approx(of_sheets.speed, rel=1e-6)  # on a node
+    for found in (of_sheets, of_file):
+        assert f'; a measured {found.measure[0]} leaves ' in found.sentence()

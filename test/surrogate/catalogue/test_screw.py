@@ -70,6 +70,24 @@ def test_the_nominal_screw_out_of_its_catalogue_values(screw):
     assert notes['preload_N'] == notes['loaded_balls_per_nut'] == 'given'
 
 
+def test_a_preloaded_nut_has_the_typical_drag_of_its_catalogue():
+    """0.7 of 0.05 (tan alpha)^-0.5 F L/(2 pi), 0.13 to 1.76 of it; without preload none."""
+    screw, notes = screw_of(CatalogueScrew(**SIZE))
+    slope = screw.lead / (2 * math.pi * screw.pitch_radius)
+    whole = 0.05 / math.sqrt(slope) * screw.preload * screw.lead / (2 * math.pi)
+    assert screw.likely_drag == pytest.approx((0.13 * whole, 0.7 * whole, 1.76 * whole), rel=5e-3)
+    assert notes['typical_drag_Nm'] == 'typical (0.7 of the drag torque of JIS B 1192)'
+    plain, notes = screw_of(CatalogueScrew(**SIZE | {'nut': 'plain'}))
+    assert plain.likely_drag is None
+    assert 'typical_drag_Nm' not in notes
+
+
+def test_a_measured_ra_has_no_typical_range():
+    assert screw_of(CatalogueScrew(**SIZE, ra=0.2e-6))[0].roughness.rms_low is None
+    rough = screw_of(CatalogueScrew(**SIZE, process='whirled'))[0].roughness
+    assert (rough.rms_low, rough.rms_high) == pytest.approx((0.25e-6, 1e-6))
+
+
 def test_the_nominal_sheet_stays_as_published():
     """Isotropic with D 2.68, whatever is typical of ground raceways."""
     roughness = load_screw('nominal').roughness

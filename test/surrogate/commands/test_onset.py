@@ -34,7 +34,8 @@ def test_the_shipped_sheet_as_a_page_in_the_range_of_the_oil(run, capsys):
         'nominal, iso_vg_68: 0 N, 40 degC',
         'new, after its first pass ',
         'cut at 7 GPa',
-        'cut at 3 GPa; ',
+        'cut at 3 GPa',
+        'a measured torque at slow speeds leaves ',
         'Contact is likely below',
         'raceway (new): Rq 0.12 um',
     ):
@@ -44,12 +45,11 @@ def test_the_shipped_sheet_as_a_page_in_the_range_of_the_oil(run, capsys):
 
 
 def test_pressures_load_and_trace_are_those_of_the_sheet(record):
-    """One that is sure has no range; harder summits touch at faster speeds."""
+    """Harder summits touch at faster speeds."""
     one = 'run_in_pressure_GPa: 3.0\n  run_in_low_GPa: 3.0\n  run_in_high_GPa: 3.0'
     states = record(f'{one}\n  hardness_GPa: 5.0')['states']
     assert states['new']['cutting_pressure_Pa'] == 5e9
     assert states['run_in']['cutting_pressure_Pa'] == 3e9
-    assert states['run_in']['speed_range_rad_s'] == [states['run_in']['speed_rad_s']] * 2
     assert states['new']['speed_rad_s'] > states['run_in']['speed_rad_s'] > 0
     found = record('traced: run_in', 'working_load_N: 900.0\n', '--load-N', 500)
     assert list(found['states']) == ['run_in']

@@ -96,6 +96,36 @@ def test_no_float_of_the_load_raises(friction, load, sign):
         assert 0.0 <= slope < math.inf
 
 
+def test_a_typical_drag_adds_to_the_torque():
+    """Of 1 N m of load and 0.1 of friction; a load that assists loses what friction keeps."""
+    load = 2 * math.pi / LEAD
+    found = laws.with_typical_drag(0.1, load, LEAD, (0.0, 0.4, 0.9))
+    assert found['friction_torque_Nm'] == pytest.approx({'low': 0.1, 'typical': 0.5, 'high': 1.0})
+    assert found['efficiency'] == pytest.approx({'low': 1 / 1.1, 'typical': 1 / 1.5, 'high': 0.5})
+    assert found['drag_Nm'] == {'low': 0.0, 'typical': 0.4, 'high': 0.9}
+    assert laws.with_typical_drag(0.1, -load, LEAD, (0.0, 0.4, 0.9))['efficiency'] == (
+        pytest.approx({'low': 0.9, 'typical': 0.5, 'high': 0.0}, abs=1e-12)
+    )
+
+
+def test_the_formula_of_jungnickel_by_hand(screw):
+    """0.050, 0.088 and 0.126 N m at 100, 300 and 600 rev/min, worked out elsewhere."""
+    found = [
+        laws.friction_torque_jungnickel_2010(
+            2 * screw.loaded_balls_per_nut,
+            27.6,
+            speed=rpm * math.pi / 30,
+            pitch_radius=screw.pitch_radius,
+            ball_radius=0.5 * screw.ball_diameter,
+            helix_angle=helix_angle(screw),
+            kinematic_viscosity=68e-6,
+            density=870.0,
+        )
+        for rpm in (100, 300, 600)
+    ]
+    assert found == pytest.approx([0.050, 0.088, 0.126], abs=6e-4)
+
+
 def test_catalogue_drag(screw):
     """0.05 (tan alpha)^-0.5 F L/(2 pi) is 0.25 N m for the nominal nut."""
     found = laws.drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))

@@ -71,6 +71,19 @@ def test_a_calibration_has_its_day_and_its_band(refused):
         replace(STATED, calibrated='2026-11-24')
 
 
+def test_a_typical_rq_lies_in_its_range(refused):
+    """Which is given with both ends, and of which the waves know nothing."""
+    known = replace(STATED, rms=0.12e-6)
+    sheet = replace(known, rms_low=0.1e-6, rms_high=0.12e-6)
+    assert sheet.spectrum == known.spectrum
+    for ends, (low, high) in (('0.13 to 0.2', (0.13e-6, 0.2e-6)), ('0.05 to 0.1', (5e-8, 1e-7))):
+        with refused('likely_range', ends=ends):
+            replace(known, rms_low=low, rms_high=high)
+    for name in ('rms_low', 'rms_high'):
+        with refused('likely_alone', name=name):
+            replace(known, **{name: 0.12e-6})
+
+
 def test_pressures_may_be_equal():
     """One that is sure, up to the hardness."""
     same = dict.fromkeys(('hardness', 'run_in_pressure', 'run_in_low', 'run_in_high'), 5e9)

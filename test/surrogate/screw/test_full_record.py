@@ -311,7 +311,7 @@ def test_every_key_is_declared_with_its_meaning():
     """Those of the closed form for both tiers, the others for the full one."""
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
-    assert both.KEYS.keys() == formulas.keys() | {'contact_onset'}
+    assert both.KEYS.keys() == formulas.keys() | {'contact_onset', 'typical_drag'}
     assert both.CONTACT_KEYS.keys() == formulas['contacts'][0].keys()
     assert full.KEYS.keys() == found.keys() - formulas.keys()
     solved = found['contacts'][0].keys()

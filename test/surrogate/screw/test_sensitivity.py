@@ -7,23 +7,14 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import FILM_POWER, SLOPE
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import sensitivity
 from surrogate.screw.closed_form import solve
+from surrogate.screw.onset_bands import unknown_band
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_band, onset_point, run_in_at, with_raceway
-from surrogate.screw.sensitivity import (
-    _fastest,
-    _spread,
-    INTERPOLATION,
-    numerical_band,
-    sensitivity_page,
-    sensitivity_record,
-    surface_bands,
-    unknown_band,
-)
-from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase
+from surrogate.screw.screw_onset import onset_point, run_in_at, with_raceway
+from surrogate.screw.sensitivity import _fastest, sensitivity_page, sensitivity_record
+from surrogate.screw.uncertain_inputs import INPUTS, ScrewCase
 from surrogate.units import RPM
 
 pytestmark = pytest.mark.usefixtures('small_tiles')
@@ -60,14 +51,6 @@ def test_what_is_spare_runs_out_at_the_fastest_speed_between_two(spare, speed):
     assert found == pytest.approx(speed, nan_ok=True)
 
 
-def test_a_spread_reaches_from_the_lowest_to_the_highest_and_over_the_stated_one():
-    assert _spread([0.5, 2.0]) == pytest.approx(math.log(4.0))
-    assert _spread([2.0, 4.0]) == pytest.approx(math.log(4.0))
-    assert _spread([0.25, 0.5]) == pytest.approx(math.log(4.0))
-    assert _spread([0.5, math.nan]) > 1e300
-    assert INTERPOLATION * -SLOPE * FILM_POWER == pytest.approx(0.1)
-
-
 def test_a_limit_is_looked_for_among_sixty_speeds_about_the_onset(screw, oil, monkeypatch):
     """From its 2.5th part to 2.5 times the onset, and from there to the fastest speed."""
     asked = []
@@ -92,7 +75,6 @@ def test_the_ranges_are_those_of_their_reasons():
         'temperature': (1.0, 5.0),
         'viscosity': (1.1, 0.0),
         'film_factor': (1 / 0.7, 0.0),
-        'rms': (1.1, 0.0),
         'fractal_dimension': (1.0, 0.1),
         'rms_slope': (1.2, 0.0),
         'preload': (1.2, 0.0),
@@ -163,13 +145,13 @@ def test_an_input_without_a_range_changes_nothing(screw, oil):
     )
     assert told == [(0, 1), (1, 1)]
     assert found['inputs'][0]['onset_factors'] == [1.0, 1.0]
-    assert found['unknown_band'] == [1.0, 1.0]
+    assert found['limit_band'] == [1.0, 1.0]
 
 
 def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(record):
     first, *_ = record['inputs']
     assert first['key'] == 'film_floor_nm'
-    low, high = record['unknown_band']
+    low, high = record['limit_band']
     assert low < min(min(row['onset_factors']) for row in record['inputs'])
     assert high > max(max(row['onset_factors']) for row in record['inputs'])
     one, two = record['measure']
@@ -177,43 +159,9 @@ def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(re
         'torque at slow speeds',
         'oil temperature at the nut',
     )
-    assert low < one['unknown_band'][0] < two['unknown_band'][0] < 1
-    left = [row_of(record, key)['onset_factors'] for key in ('viscosity_Pa_s', 'rms_um')]
-    assert two['unknown_band'] == pytest.approx(unknown_band(left))
-
-
-def test_independent_inputs_add_up_as_squares_of_logarithms():
-    assert unknown_band([]) == [1.0, 1.0]
-    assert unknown_band([[0.5, 1.5]]) == pytest.approx([0.5, 1.5])
-    assert unknown_band([[0.5, 2.0], [2.0, 0.5]]) == pytest.approx(
-        [0.5 ** math.sqrt(2), 2 ** math.sqrt(2)]
-    )
-    # Both ends below: nothing above.
-    assert unknown_band([[0.8, 0.9]]) == pytest.approx([0.8, 1.0])
-    assert all(map(math.isnan, unknown_band([[math.nan, 1.5]])))
-
-
-def test_the_band_of_numerics_is_that_of_the_law(screw, oil, record):
-    """At the point, whatever is known of the inputs; a lookup adds a little."""
-    case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
-    place = oil, POINT.opposing_load, POINT.temperature
-    band = onset_band(Contacts.of(screw), *place)['band']
-    assert record['numerical_band'] == pytest.approx(band)
-    assert 1 < numerical_band(case, 0.02)[1] / band[1] < 1.01
-    assert numerical_band(case, 0.02)[0] < band[0]
-
-
-def test_a_surface_has_the_band_of_the_inputs_that_move_it(screw, oil, record):
-    """At the preload: of all that is quick, Rq and the dimension."""
-    point = OperatingPoint(speed=0.0, load=0.0, temperature=oil.reference_temperature)
-    used = [*QUICK, BY_NAME['rms'], BY_NAME['fractal_dimension']]
-    found = sensitivity_record(screw, oil, point, inputs=used)
-    assert surface_bands(screw, oil) == {
-        'limit_band': pytest.approx(found['unknown_band']),
-        'numerical_band': numerical_band(
-            ScrewCase(screw=screw, lubricant=oil, point=point), INTERPOLATION
-        ),
-    }
+    assert low < one['limit_band'][0] < two['limit_band'][0] < 1
+    left = [('', row_of(record, key)['onset_factors']) for key in ('viscosity_Pa_s', 'rms_um')]
+    assert two['limit_band'] == pytest.approx(unknown_band(left))
 
 
 def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
@@ -259,7 +207,6 @@ def test_every_end_of_every_input_is_a_sheet(screw, oil):
     assert low == 0.501
     nut = BY_NAME['conformity_screw'].at(ScrewCase(screw=groove, lubricant=oil, point=POINT), low)
     assert nut.screw.conformity_nut == 0.501
-    assert set(LEFT_OUT) < {one.name for one in INPUTS}
     assert {spec.name for spec in fields(OperatingPoint)} >= {'temperature'}
 
 
@@ -282,17 +229,17 @@ def test_half_and_double_of_the_working_load_are_in_no_band(screw, oil):
     assert [row[end] for end in ('low', 'stated', 'high')] == [500.0, 1000.0, 2000.0]
     light, heavy = row['onset_factors']
     assert light > 1 > heavy > 0
-    assert found['unknown_band'] == row_of(found, 'temperature_degC')['onset_factors']
-    assert 'working_load' in LEFT_OUT
+    assert found['limit_band'] == row_of(found, 'temperature_degC')['onset_factors']
+    assert not load.measured
 
 
 def test_an_end_that_the_model_refuses_is_not_known(screw, oil, refused):
     """It leaves a band that is not known, and the page has the sentence."""
     soft = dict.fromkeys(('hardness', 'run_in_low', 'run_in_pressure', 'run_in_high'), 1.8e9)
-    heavy = [replace(BY_NAME['preload'], times=3.0)]
+    heavy = [replace(BY_NAME['preload'], times=3.0, measured='torque without load')]
     found = sensitivity_record(with_raceway(screw, **soft), oil, POINT, inputs=heavy)
     assert math.isnan(found['inputs'][0]['onset_factors'][1])
-    assert all(map(math.isnan, found['unknown_band']))
+    assert all(map(math.isnan, found['limit_band']))
     assert 'see working_load_N, run_in_pressure_GPa' in sensitivity_page(found)
     refused('smooth', sensitivity_record, with_raceway(screw, rms=0.0), oil, POINT)
 
@@ -301,7 +248,7 @@ def test_the_page_has_a_line_per_input_and_keeps_the_bands_apart(record):
     page = sensitivity_page(record)
     assert '600 rev/min, 500 N, 40 degC, closed form' in page
     assert page.count('\n  film_floor_nm ') == 1
-    low, high = record['unknown_band']
+    low, high = record['limit_band']
     assert f'not known  contact begins at {low:.2g} to {high:.2g} times the stated speed' in page
     low, high = record['numerical_band']
     assert f'numerics   contact begins at {low:.2g} to {high:.2g} times' in page
@@ -318,9 +265,10 @@ a_unit 0.5 - 10710 30 to 120 0.4 to - 45 to 180 - to 300 because
 b 1 1.5 1000000 30 to 120 0.4 to - 45 to 180 - to 300 not so
 not known contact begins at 0.5 to 2 times the stated speed: 30 to 120 rev/min
 numerics contact begins at 0.8 to 1.2 times the stated speed: 48 to 75 rev/min
+both contact begins at 0.4 to 2.5 times the stated speed: 24 to 150 rev/min
 law here it is off
-measure m: 0.7 to 1.4 times is left
-then n: 0.9 to 1.1 times is left"""
+measure m: 0.66 to 1.5 times is left
+then n: 0.78 to 1.3 times is left"""
 
 
 def test_the_page_of_a_record_by_hand():
@@ -346,12 +294,13 @@ def test_the_page_of_a_record_by_hand():
             {'key': 'a_unit', 'low': 0.5, 'stated': None, 'high': 10714.0, 'refused': '', **ends},
             {'key': 'b', 'low': 1.0, 'stated': 1.5, 'high': 1e6, 'refused': 'not so', **ends},
         ],
-        'unknown_band': [0.5, 2.0],
+        'limit_band': [0.5, 2.0],
         'numerical_band': [0.8, 1.25],
+        'band': [0.4, 2.5],
         'law_doubt': 'here it is off',
         'measure': [
-            {'measurement': 'm', 'unknown_band': [0.7, 1.4]},
-            {'measurement': 'n', 'unknown_band': [0.9, 1.1]},
+            {'measurement': 'm', 'limit_band': [0.7, 1.4]},
+            {'measurement': 'n', 'limit_band': [0.9, 1.1]},
         ],
     }
     lines = sensitivity_page(record).splitlines()
@@ -376,9 +325,9 @@ def test_the_picture_has_a_bar_per_end_and_the_bands(record, tmp_path):
         'Efficiency falls to 0.85',
     ]
     bars = 2 * len(record['inputs'])
-    assert [len(axes.patches) for axes in figure.axes] == [bars + 2, bars, bars]
+    assert [len(axes.patches) for axes in figure.axes] == [bars + 3, bars, bars]
     words = [text.get_text() for text in figure.axes[0].get_yticklabels()]
-    assert words[:2] == ['numerics', 'not known']
+    assert words[:3] == ['both', 'numerics', 'not known']
     assert words[-1] == 'film_floor_nm  1 to 5'
     assert draw_sensitivity(tmp_path, record).name == 'sensitivity_nominal_iso_vg_68.png'
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sentence about contact, limit and zone follows from what the surface holds."""
 
-import copy
 from dataclasses import replace
 import math
 
@@ -49,8 +48,7 @@ def changed(*, onset=1.0, friction=1.0):
     [
         ('zone', {}),
         ('no_band', {'band': (math.nan, math.nan)}),
-        ('doubt', {'doubt': ' by the law alone'}),
-        ('unknown', {'doubt': onset_of_surface(FULL).doubt}),
+        ('measured', {'measure': ('trace', (0.8, 1.25))}),
         ('smooth', {'speed': 0.0}),
         ('friction', {'zone': False}),
         ('remedies', {'zone': False, 'slower': 2.0, 'colder': 290.15}),
@@ -58,7 +56,7 @@ def changed(*, onset=1.0, friction=1.0):
         ('rough_balls', {'zone': False, 'slower': 2.0, 'rms': 0.0}),
         ('short_surface', {'zone': False, 'slower': 2.0, 'reach': 1000 * RPM}),
         ('small_rms', {'rms': 0.04e-6}),
-        ('zone', {'rms': 0.04e-6, 'calibrated': True}),
+        ('by_calibration', {'rms': 0.04e-6, 'calibrated': True}),
     ],
 )
 def test_the_sentence_names_speed_limit_zone_and_what_gives_one(key, changes, says):
@@ -103,29 +101,20 @@ def test_the_record_has_the_numbers_of_the_sentence():
 def test_speed_and_band_are_those_of_the_surface(kelvin):
     found = onset_of_surface(FULL, kelvin)
     assert found.speed == FULL.onset_speed(0.0, kelvin)
-    assert found.band == FULL.limit_band
+    assert found.band == FULL.onset_band
     assert found.fastest == pytest.approx(FULL.speed_range[1])
 
 
-@pytest.mark.parametrize(
-    ('keys', 'doubt'),
-    [
-        (
-            {'state': 'run_in', 'traced': 'new'},
-            ' by running in, oil and temperature; a trace of the raceway as it runs narrows it '
-            'most',
-        ),
-        (
-            {'state': 'run_in', 'traced': 'run_in'},
-            ' by oil and temperature; the torque at slow speeds narrows it most',
-        ),
-        ({'onset_band': 1.5}, ' by its calibration'),
-    ],
-)
-def test_a_band_says_what_it_hangs_on(keys, doubt):
-    header = copy.deepcopy(DATA.header)
-    header['inputs']['screw']['roughness'] |= keys
-    assert onset_of_surface(Surface(replace(DATA, header=header))).doubt == doubt
+def test_what_a_measurement_leaves_has_the_numerics_too():
+    steps = [{'measurement': 'trace', 'limit_band': [0.8, 1.25]}]
+    bands = {'limit_band': [0.5, 2.0], 'numerical_band': [0.7, 1.4], 'measure': steps}
+    surface = Surface(replace(DATA, header={**DATA.header, **bands}))
+    found = onset_of_surface(surface)
+    whole = [math.hypot(math.log(2.0), math.log(factor)) for factor in (0.7, 1.4)]
+    assert found.band == pytest.approx((math.exp(-whole[0]), math.exp(whole[1])))
+    name, left = found.measure
+    assert name == 'trace'
+    assert math.log(left[1]) == pytest.approx(math.hypot(math.log(1.25), math.log(1.4)))
 
 
 def test_the_temperature_is_that_of_the_oil_sheet_or_the_nearest_that_is_covered():

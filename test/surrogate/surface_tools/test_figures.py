@@ -82,7 +82,7 @@ def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
     shown = titles(figures.figure_surface(Surface(drawn), 313.15))
     assert 'RCS over strips' in shown
     assert 'Regime by Lambda' not in shown
-    assert 'RCS, line: 0.01, dashed: not known, dotted: numerics' in shown
+    assert 'RCS, line: 0.01, dashed: its band, dotted: numerics alone' in shown
 
 
 def test_a_surface_without_answers_is_drawn(coarse):

@@ -64,6 +64,26 @@ def test_a_page_says_what_is_known(run, capsys, says):
     assert 'worst contact        relieved nut, nut' in text
 
 
+def test_a_typical_drag_is_the_band_of_torque_and_efficiency(run, capsys, tmp_path, query):
+    """Beside the numbers of the contacts, which stay; nothing of it once it is identified."""
+    data = read(CLOSED_FORM)
+    drag = {'typical_drag_low': 0.1, 'typical_drag': 0.3, 'typical_drag_high': 0.9}
+    inputs = {**data.header['inputs'], 'screw': {**data.header['inputs']['screw'], **drag}}
+    write(tmp_path / 'a.npz', replace(data, header={**data.header, 'inputs': inputs}))
+    place = '--speed-rpm', 600, '--load-N', 1000
+    bare, found = query('closed_form', *place), query(tmp_path / 'a.npz', *place)
+    assert found['efficiency'] == bare['efficiency']
+    ideal = 1000 * 0.01 / (2 * math.pi)
+    for end, value in (('low', 0.1), ('typical', 0.3), ('high', 0.9)):
+        torque = bare['friction_torque_Nm'] + value
+        assert found[f'typical_drag_{end}_friction_torque_Nm'] == pytest.approx(torque)
+        share = ideal / (ideal + torque)
+        assert found[f'typical_drag_{end}_efficiency'] == pytest.approx(share)
+    assert not any(key.startswith('typical_drag') for key in bare)
+    assert run(tmp_path / 'a.npz', *place) == 0
+    assert 'with typical drag    efficiency 0.7' in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ('words', 'reason'),
     [

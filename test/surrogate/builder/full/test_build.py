@@ -22,7 +22,6 @@ from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import with_raceway
-from surrogate.screw.sensitivity import surface_bands
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface.aims import rcs_tolerance
@@ -223,16 +222,6 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil, refused):
     heavy = with_raceway(replace(screw, working_load=50e3), state='run_in')
     with pytest.raises(InputError, match='the mean pressure is 3.33 GPa, allowed is'):
         build_full(heavy, oil, SETTINGS, None)
-
-
-def test_the_bands_are_those_of_the_sensitivity(data, screw, oil):
-    """Found before the nodes are solved; a calibration has its own."""
-    bands = surface_bands(screw, oil)
-    assert {name: data.header[name] for name in bands} == bands
-    calibrated = with_raceway(screw, calibrated='2026-11-24', onset_band=1.25)
-    found = surface_bands(calibrated, oil)
-    assert found['limit_band'] == [0.8, 1.25]
-    assert found['numerical_band'][1] < bands['numerical_band'][1]
 
 
 def test_info_says_where_contact_begins_and_what_was_reached(data, tmp_path):
