@@ -67,9 +67,6 @@ def input_status_of(
     `field` is the path of its number, `joints` are those that other messages name.
 
     """
-    state = input_state_of(memory, settings, source, now)
-    if not settings.configured[source]:  # nothing ever comes of it
-        return InputStatus(source=source, state=state)
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
@@ -86,7 +83,7 @@ def input_status_of(
         refusal = inputs.refusal_text(source, Why(why), *numbers, most=most, field=field)
     return InputStatus(
         source=source,
-        state=state,
+        state=input_state_of(memory, settings, source, now),
         rate=_rate(memory, source),
         stamp_source=StampSource(int(memory.stamp_source[source]) if known else 0),
         age=max(0.0, seconds(now - int(memory.arrival[source]))) if known else NAN,
