@@ -26,7 +26,7 @@ class WrittenTimes:
 
     def __init__(self) -> None:
         """Begin with no message."""
-        self._stretches: dict[str, list[tuple[int, int, int]]] = {}
+        self._stretches: dict[str, list[tuple[int, int, int, int]]] = {}
 
     def add(self, topic: str, messages: Messages) -> None:
         """Take further messages of a topic, those of a chunk together."""
@@ -37,17 +37,35 @@ class WrittenTimes:
         for place, part in zip(np.split(places, borders), np.split(times, borders), strict=True):
             while len(part):
                 end = _end(part)
-                held.append((int(place[0]), int(part[:end].min()), int(part[:end].max())))
+                held.append((int(place[0]), int(part[:end].min()), int(part[:end].max()), end))
                 place, part = place[end:], part[end:]
 
     def falls(self) -> Iterator[tuple[str, int, int]]:
         """Yield where the log times of a topic go back: to which from which of them [ns]."""
         for topic, held in self._stretches.items():
-            latest = 0
-            for _, first, last in sorted(held):
-                if latest - first > BACKWARD_JUMP:
-                    yield topic, first, latest
-                latest = max(latest, last) if latest - first <= BACKWARD_JUMP else last
+            course = _Course()
+            for _, first, last, count in sorted(held):
+                if fall := course.fall(first, last, count):
+                    yield topic, *fall
+
+
+class _Course:
+    """The log times of a topic so far [ns]; a single message that lies back is no run."""
+
+    def __init__(self) -> None:
+        self._latest = 0
+        self._single: tuple[int, int] | None = None
+
+    def fall(self, first: int, last: int, count: int = 1) -> tuple[int, int] | None:
+        """Take a rising stretch; return where times go back with it: to which from which [ns]."""
+        if self._latest - first <= BACKWARD_JUMP:
+            self._latest, self._single = max(self._latest, last), None
+        elif self._single is None and count == 1:
+            self._single = first, self._latest
+        else:
+            found, self._latest, self._single = self._single or (first, self._latest), last, None
+            return found
+        return None
 
 
 def _end(times: Integers) -> int:
@@ -74,10 +92,8 @@ def _falls_of_messages(bag: Bag, topics: Collection[str]) -> Iterator[tuple[str,
     """Yield what `falls` does of a bag whose files are not read by chunks."""
     if all(isinstance(one, McapStorage) and one.is_indexed for one in bag.storages):
         return
-    latest: dict[str, int] = {}
+    courses: dict[str, _Course] = {}
     for message in bag.as_written(topics):
-        topic, time = message.topic, message.log_time
-        before = latest.get(topic, time)
-        if before - time > BACKWARD_JUMP:
-            yield topic, time, before
-        latest[topic] = time if before - time > BACKWARD_JUMP else max(before, time)
+        course = courses.setdefault(message.topic, _Course())
+        if fall := course.fall(message.log_time, message.log_time):
+            yield message.topic, *fall

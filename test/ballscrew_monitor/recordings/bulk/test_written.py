@@ -80,11 +80,20 @@ def messages(times, places):
     return Messages(data=b'', log_time=np.array(times), place=np.array(places), **rest)
 
 
-def test_chunks_in_whatever_order_are_compared_as_they_were_written():
-    """Three chunks, of which the last begins again; the reader gives them by their first times."""
-    first, second, third = 0, 1 << 32, 2 << 32
+def falls(*chunks):
+    """Return the falls of a topic whose chunks have log times [s], given in another order."""
     written = WrittenTimes()
-    written.add('/a', messages([5 * SECOND, 6 * SECOND], [first, first + 1]))
-    written.add('/a', messages([2 * SECOND, 7 * SECOND, 8 * SECOND], [third, second, second + 1]))
-    written.add('/b', messages([9 * SECOND, 3 * SECOND], [second, first]))
-    assert list(written.falls()) == [('/a', 2 * SECOND, 8 * SECOND)]
+    for number, times in sorted(enumerate(chunks), key=lambda chunk: min(chunk[1])):
+        places = [(number << 32) + place for place in range(len(times))]
+        written.add('/a', messages([time * SECOND for time in times], places))
+    return [(first // SECOND, latest // SECOND) for _, first, latest in written.falls()]
+
+
+def test_chunks_in_whatever_order_are_compared_as_they_were_written():
+    assert falls([5, 6], [7, 8], [2, 3]) == [(2, 8)]
+    assert falls([5, 6], [7, 8], [2], [3]) == [(2, 8)]
+    assert falls([5, 6], [7, 8, 2, 3, 4], [1, 2]) == [(2, 8), (1, 4)]
+
+
+def test_a_single_message_of_an_earlier_time_is_no_run():
+    assert falls([5, 6], [2], [7, 8]) == falls([5, 6, 2, 7, 8]) == falls([5, 6], [7, 8, 1]) == []
