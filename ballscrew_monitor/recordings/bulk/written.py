@@ -69,9 +69,10 @@ class _Course:
 
 
 def _end(times: Integers) -> int:
-    """Return where log times first go back [ns], how many they are if they do not."""
-    back = np.maximum.accumulate(times) - times > BACKWARD_JUMP
-    return int(back.argmax()) if back.any() else len(times)
+    """Return where log times first go back or leap [ns], how many they are if they do not."""
+    most = np.maximum.accumulate(times)
+    apart = (most - times > BACKWARD_JUMP) | (np.diff(most, prepend=times[0]) > BACKWARD_JUMP)
+    return int(apart.argmax()) if apart.any() else len(times)
 
 
 def check_rising(bag: Bag, times: WrittenTimes, topics: Collection[str]) -> None:
