@@ -32,6 +32,7 @@ from surrogate.units import RPM, ZERO_CELSIUS
 __all__ = [
     'BallRoughness',
     'DATA',
+    'is_shipped',
     'load_lubricant',
     'load_screw',
     'Lubricant',
@@ -243,12 +244,15 @@ class Screw(Checked):
         """
         Return the values by name on which a solve depends.
 
-        Of nuts, oversize balls alone have other contacts.
+        Of nuts, oversize balls alone have other contacts; raceways that were not marched say
+        nothing of it.
 
         """
         values = asdict(self)
         if self.nut != 'oversize':
             del values['nut']
+        if self.roughness.marched_film is None:
+            del values['roughness']['marched_film'], values['roughness']['marched_error']
         return {name: value for name, value in values.items() if name not in self.SERVICE}
 
     def service(self) -> dict[str, Any]:
@@ -458,6 +462,12 @@ def load_screw(name_or_path: str) -> Screw:
     screw = read_sheet(Screw, path)
     check_waves(screw.roughness, str(path))
     return screw
+
+
+def is_shipped(screw: Screw) -> bool:
+    """Return True if the sheet of a screw is one of those that come with the package."""
+    path = DATA / 'screws' / f'{screw.name}.yaml'
+    return path.is_file() and read_sheet(Screw, path) == screw
 
 
 def check_waves(roughness: Roughness, where: str) -> None:

@@ -48,11 +48,12 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         coldest=min(lubricant.minimum_temperature, temperature),
         reach=fastest,
         band=(low, high),
-        doubt=BY_THE_LAW,
+        doubt='' if screw.roughness.marched_film else BY_THE_LAW,
         fastest=fastest,
         oil=lubricant.name,
         viscosity=lubricant.kinematic_viscosity_40,
         rms=screw.roughness.rms,
         calibrated=screw.roughness.onset_band is not None,
+        marched=screw.roughness.marched_film is not None,
         lead=screw.lead,
     )

@@ -9,16 +9,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import NINE_OF_TEN
+from surrogate.ehl import ContactLubricant
 from surrogate.files import InputError
+from surrogate.formulas.geometry import Side
 from surrogate.formulas.inlet import speed_before_inlet, starved_speed
 from surrogate.formulas.line import central_film_line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
+from surrogate.raceway.stated import NINE_OF_TEN
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
-from surrogate.surface.contact_onset import law_doubt
+from surrogate.surface.contact_onset import law_doubt, MARCHED
 from surrogate.units import digits, GIGA, MICRO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -52,7 +54,9 @@ def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperatur
 
 
 def with_raceway(screw: Screw, **changes: Any) -> Screw:
-    """Return a screw with other keys of its raceway roughness."""
+    """Return a screw with other keys of its raceway roughness; marches hold in their state."""
+    if changes.get('state', screw.roughness.state) != screw.roughness.state:
+        changes = {'marched_film': None, 'marched_error': None, **changes}
     return replace(screw, roughness=replace(screw.roughness, **changes))
 
 
@@ -88,18 +92,31 @@ def onset_point(
 
     """
     screw, oil = opened.sheet, oil_at(lubricant, temperature)
-    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
-    force, film = float(normal_force(screw, loaded)), 0.0
-    entrainment, side = max(
-        (onset.speed(opened.geometry[side], force, oil, lubricant.film_floor), side)
-        for side, onset in opened.law.onsets.items()
-    )
+    force, film = loaded_force(screw, load), 0.0
+    entrainment, side = onset_side(opened, oil, lubricant.film_floor, load)
     if entrainment:
         line = line_at(opened.geometry[side], force, 0.0)
         film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
     before = speed_before_inlet(screw, lubricant, side, force, entrainment, temperature)
     speed = before / opened.rates.entrainment
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
+
+
+def loaded_force(screw: Screw, load: float) -> float:
+    """Return the normal force of a ball of the loaded nut [N] under an axial load [N]."""
+    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
+    return float(normal_force(screw, loaded))
+
+
+def onset_side(
+    opened: Contacts, oil: ContactLubricant, floor: float, load: float
+) -> tuple[float, Side]:
+    """Return the faster onset of both sides [m/s] under an axial load [N], and its side."""
+    force = loaded_force(opened.sheet, load)
+    return max(
+        (onset.speed(opened.geometry[side], force, oil, floor), side)
+        for side, onset in opened.law.onsets.items()
+    )
 
 
 def onset_band(
@@ -150,11 +167,12 @@ def onset_record(
         contacts = Contacts.of(raceway)
         states[state] = onset_point(contacts, *place) | {
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
+            'marched': raceway.roughness.marched_film is not None,
             **onset_band(contacts, *place),
         }
     if len(states) > 1:
         states['run_in']['speed_range_rad_s'] = onset_over_pressure(
-            screw, *place, run_in_range(screw)
+            with_raceway(screw, state='run_in'), *place, run_in_range(screw)
         )
     # The lower the pressure at which summits are cut, the more the load matters.
     raceway = with_raceway(screw, state=[*states][-1])
@@ -189,8 +207,7 @@ def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
-    calibrated = sheet.onset_band is not None
-    found = [law_doubt(rms=sheet.rms, calibrated=calibrated)]
+    found = [law_doubt(rms=sheet.rms, measured=sheet.measured)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:
@@ -239,8 +256,8 @@ def _told(found: Mapping[str, Any]) -> str:
     cut = found['cutting_pressure_Pa']
     low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
     text = (
-        f'contact begins at {digits(found["speed_rad_s"] / RPM)} rev/min '
-        f'({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
+        f'{MARCHED * found["marched"]}contact begins at {digits(found["speed_rad_s"] / RPM)} '
+        f'rev/min ({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
         f'cut at {GIGA * cut:g} GPa'
     )
     if 'speed_range_rad_s' in found:

@@ -92,9 +92,7 @@ def sensitivity_record(
         'inputs': rows,
         'unknown_band': _without(rows),
         'numerical_band': numerical_band(case),
-        'law_doubt': law_doubt(
-            rms=screw.roughness.rms, calibrated=screw.roughness.onset_band is not None
-        ),
+        'law_doubt': law_doubt(rms=screw.roughness.rms, measured=screw.roughness.measured),
         'measure': _narrowed(rows),
     }
 

@@ -12,6 +12,7 @@ from surrogate.files import InputError
 from surrogate.parameters import screw_and_oil
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import onset_of_surface, Surface
+from surrogate.surface.contact_onset import MARCHED
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
 from surrogate.units import digits, RPM, ZERO_CELSIUS
@@ -65,6 +66,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
         'march': data.header.get('march'),
+        'march_lines': list(march_lines(data)),
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
@@ -154,8 +156,7 @@ def _quality(record: Mapping[str, Any]) -> Iterator[str]:
             '  accuracy     the worst held-out point has '
             f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
         )
-    if record['march'] is not None:
-        yield from march_lines(record['march'])
+    yield from (f'  {line}' for line in record['march_lines'])
     yield from (f'  formulas     {text}' for text in record['formula_warnings'])
     yield '  measured interpolation error                    max         p95'
     for name, error in record['errors'].items():
@@ -169,20 +170,27 @@ def _quality(record: Mapping[str, Any]) -> Iterator[str]:
     yield from (f'    {name:12} {value}' for name, value in record['provenance'].items())
 
 
-def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a line for each strip of the raceway that was marched, beside the law."""
-    if not march:
-        yield '  marched      no strip: all failed'
-    for name, strip in march.items():
+def march_lines(data: SurfaceData) -> Iterator[str]:
+    """Yield what strips of the raceway say of the onset, and a line for each; nothing if none."""
+    raceway = data.header['inputs']['screw']['roughness']
+    if raceway.get('marched_film') is not None:
+        onset = onset_of_surface(Surface(data)).speed
+        # Formulas alone have no band.
+        ends = [digits(factor * onset / RPM) for factor in data.header.get('numerical_band', [])]
+        between = f' ({" to ".join(ends)})' * bool(ends)
+        yield (
+            f'{MARCHED}contact begins at {digits(onset / RPM)} rev/min{between}, with '
+            f'{raceway["marched_film"]:.2f} times the film of the law'
+        )
+    for name, strip in data.header.get('march', {}).items():
         marched, by_law = strip['marched_m_s'], strip['told_m_s']
-        onset = 'does not begin'
+        begins = 'does not begin'
         if marched is not None:
-            films = f'{strip["film_factor"]:.2f} times the film of the law'
-            onset = (
-                f'begins at {marched:.3g} m/s, with {films}, told over marched '
-                f'{by_law / marched:.2f}'
+            begins = (
+                f'begins at {marched:.3g} m/s, with {strip["film_factor"]:.2f} times the film of '
+                f'the law, told over marched {by_law / marched:.2f}'
             )
         yield (
-            f'  marched      {name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: '
-            f'contact {onset}, told {by_law:.3g} m/s; {strip["status"]}'
+            f'{name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: contact {begins}, '
+            f'told {by_law:.3g} m/s; {strip["status"]}'
         )
