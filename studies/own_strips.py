@@ -169,7 +169,7 @@ def report(rows: Sequence[Strip]) -> Iterator[str]:
         lay, seconds = next(iter(strips.values())).lay, sum(row.seconds for row in strips.values())
         text = ', '.join(f'{name} {row.film_factor:.2f}' for name, row in strips.items())
         known = marched_film(factors)
-        if known and held is not None and FINER in factors:
+        if known and held is not None:
             off = math.log(held / known['marched_film'])
             band = math.exp(NINE_OF_TEN * known['marched_error'])
             inside = abs(off) <= math.log(max(band, WANTED))
@@ -184,14 +184,12 @@ def report(rows: Sequence[Strip]) -> Iterator[str]:
 
 
 def wanted() -> Iterator[tuple[int, str, dict[str, Any]]]:
-    """Yield all strips: of half of the screws the coarse ones, then the finer ones, and so on."""
-    halves = range(len(OWN) // 2), range(len(OWN) // 2, len(OWN))
-    for half in halves:
-        for finer in (False, True):
-            for number in half:
-                for name, task in tasks_of(number, OWN[number]).items():
-                    if (name == FINER) is finer:
-                        yield number, name, task
+    """Yield all strips: of every screw the coarse ones, then the finer ones."""
+    for finer in (False, True):
+        for number, own in enumerate(OWN):
+            for name, task in tasks_of(number, own).items():
+                if (name == FINER) is finer:
+                    yield number, name, task
 
 
 def main() -> None:

@@ -38,7 +38,7 @@ class Roughness(RoughnessSpectrum):
     lie, `onset_band` [-].
 
     `marched_film` is the film at the onset of marched strips of this raceway over that which the
-    law tells [-], with the standard error of its logarithm, `marched_error` [-].
+    law tells [-], `marched_error` the standard error of its logarithm for one more strip [-].
 
     """
 
@@ -116,7 +116,12 @@ class Roughness(RoughnessSpectrum):
         'state by `surface build`',
     )
     marched_error: float | None = quantity(
-        '', 1.0, 0.0, 2.0, default=None, means='standard error of the logarithm of `marched_film`'
+        '',
+        1.0,
+        0.0,
+        5.0,
+        default=None,
+        means='standard error of the logarithm of `marched_film`, as one more strip has it',
     )
 
     def __post_init__(self) -> None:

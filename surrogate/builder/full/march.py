@@ -20,6 +20,7 @@ from surrogate.asperities.law import ONSET_RCS
 from surrogate.asperities.running_in import RunningContact, TILES
 from surrogate.asperities.strips import raceway_strips, TRANSITS, WAVES
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
+from surrogate.raceway.stated import FILM_FACTORS
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_side
@@ -28,7 +29,7 @@ ENOUGH = 2 * ONSET_RCS
 """RCS at which a march ends [-]: slower speeds do not tell the onset."""
 FINER = 'finer strip'
 """Name of the strip with one wave more."""
-SCATTER, SCATTER_STRIPS = 0.08, 4
+SCATTER, SCATTER_STRIPS = 0.1, 2
 """Standard deviation of the logarithm of the film factor between strips of one raceway [-], and as
 how many strips it counts beside those of this one [-]."""
 FEWEST = 2
@@ -110,10 +111,11 @@ def marched_film(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
     strips, and of the difference between the finer strip and the coarse one of the same tile.
 
     """
+    least, most = FILM_FACTORS
     logs = {
         name: math.log(strip['film_factor'])
         for name, strip in strips.items()
-        if strip['film_factor'] is not None
+        if strip['film_factor'] is not None and least <= strip['film_factor'] <= most
     }
     finer = logs.pop(FINER, math.nan)
     if len(logs) < FEWEST:

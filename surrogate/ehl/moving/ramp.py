@@ -155,7 +155,6 @@ def knots(speeds: tuple[float, float]) -> Sequence[float]:
 
 def _ramp(march: March, transits: float) -> SpeedRamp:
     began = time.perf_counter()
-    march.deadline = began + march.settings.time_cap
     march.run(transits / march.settings.places)
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]

@@ -4,7 +4,6 @@
 
 from dataclasses import dataclass, field, replace
 import math
-import time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +69,6 @@ class March:
     grid: Grid
     settings: MarchSettings
     path: SmoothPath | None
-    deadline: float = math.inf
     enough: float = math.inf
     turn: int = 1
     places: list[list[Measure]] = field(default_factory=list)
@@ -172,8 +170,6 @@ class March:
         self._tell(step.newton, step.outcome.flux_error)
         if self.failed_in_a_row == STALLED:
             self.ended = MarchStatus.STALLED
-        elif time.perf_counter() > self.deadline:
-            self.ended = MarchStatus.OUT_OF_TIME
 
     def _tell(self, count: int, residual: float) -> None:
         """Tell who watches how many steps are made, and what the last one took [-]."""
