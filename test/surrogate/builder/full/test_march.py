@@ -6,6 +6,7 @@ from dataclasses import replace
 import json
 import math
 
+import numpy as np
 import pytest
 from surrogate.asperities.law import FILM_BANDS
 from surrogate.builder import tiers
@@ -91,24 +92,25 @@ def test_strips_correct_the_film_by_their_mean_with_its_standard_error():
 
 
 def test_strips_that_were_held_out_lie_within_what_is_stated(table):
-    """20 own screws of all lays, marched by `studies/own_strips.py`: nine of ten, or 1.15."""
+    """Or within 1.15: nine of ten of 20 own screws; the law alone misses isotropic ones more."""
     screws = {}
     for row in table('own_strips.csv'):
         factor = float(row['film_factor'])
         screws.setdefault((row['own'], row['lay']), {})[row['strip']] = strip(factor=factor)
-    inside = {'isotropic': [], 'longitudinal': [], 'transverse': []}
+    inside, isotropic = [], []
     for (_, lay), strips in screws.items():
         held_out = strips.pop('strip 4')['film_factor']
         known = marched_film(strips)
         off = abs(math.log(held_out / known['marched_film']))
         band = NINE_OF_TEN * known['marched_error']
         assert band < math.log(1.5)
-        inside[lay].append(off <= max(band, math.log(1.15)))
-    every = sum(inside.values(), [])
-    assert len(every) == 20
-    assert sum(every) >= 18
-    for lay in inside.values():
-        assert sum(lay) >= 0.9 * len(lay) - 0.5
+        inside.append(off <= max(band, math.log(1.15)))
+        if lay == 'isotropic':
+            isotropic.append((off, abs(math.log(held_out))))
+    assert len(inside) == 20
+    assert sum(inside) >= 18
+    corrected, by_law = np.sqrt(np.mean(np.square(isotropic), axis=0))
+    assert corrected < 0.75 * by_law
 
 
 def test_one_strip_alone_corrects_nothing():
