@@ -56,7 +56,7 @@ class Again:
 def settings_of(one: Strip) -> MarchSettings:
     """Return the settings of the marches of the table."""
     nx = 2 * math.ceil(0.5 * ALONG * 5.2 * one.strip.semi_axis / one.shortest) + 1
-    return MarchSettings(nx=nx, places=1, film_floor=one.film_floor, time_cap=3600.0)
+    return MarchSettings(nx=nx, places=1, film_floor=one.film_floor)
 
 
 def fall(one: Strip, start: float, speeds: tuple[float, float], transits: float) -> Again:

@@ -138,7 +138,7 @@ def strip_of(row: dict[str, str]) -> Strip:
 def march(one: Strip) -> None:
     """March a strip again while its speed falls, and print what it found."""
     nx = 2 * math.ceil(0.5 * ALONG * 5.2 * one.strip.semi_axis / one.shortest) + 1
-    settings = MarchSettings(nx=nx, places=1, film_floor=one.film_floor, time_cap=3600.0)
+    settings = MarchSettings(nx=nx, places=1, film_floor=one.film_floor)
     speeds = (2.2 * one.onset, 0.2 * one.onset)
     ramp = ramp_strip(
         one.strip, one.oil, speeds, one.tile.height_at, transits=TRANSITS, settings=settings

@@ -123,7 +123,7 @@ def march(case: Case) -> list[Part]:
     """March a case; return its means."""
     one = case.strip
     nx = 2 * math.ceil(0.5 * ALONG * 5.2 * one.strip.semi_axis / one.shortest) + 1
-    settings = MarchSettings(nx=nx, places=1, film_floor=one.film_floor, time_cap=7200.0)
+    settings = MarchSettings(nx=nx, places=1, film_floor=one.film_floor)
     transits = math.log(case.first / case.last) / RATE
     speeds = case.first, case.last
     ramp = ramp_strip(

@@ -33,6 +33,7 @@ from surrogate.units import RPM, ZERO_CELSIUS
 __all__ = [
     'BallRoughness',
     'DATA',
+    'is_shipped',
     'load_lubricant',
     'load_screw',
     'Lubricant',
@@ -280,13 +281,14 @@ class Screw(Checked):
         Return the values by name on which a solve depends.
 
         Of nuts, oversize balls alone have other contacts; a likely range that is absent leaves no
-        trace.
+        trace, nor do marches.
 
         """
         values = asdict(self)
         if self.nut != 'oversize':
             del values['nut']
-        for part, names in ((values, self.LIKELY), (values['roughness'], Roughness.LIKELY)):
+        raceway = values['roughness'], (*Roughness.LIKELY, *Roughness.MARCHED)
+        for part, names in ((values, self.LIKELY), raceway):
             for name in names:
                 if part[name] is None:
                     del part[name]
@@ -499,6 +501,12 @@ def load_screw(name_or_path: str) -> Screw:
     screw = read_sheet(Screw, path)
     check_waves(screw.roughness, str(path))
     return screw
+
+
+def is_shipped(screw: Screw) -> bool:
+    """Return True if the sheet of a screw is one of those that come with the package."""
+    path = DATA / 'screws' / f'{screw.name}.yaml'
+    return path.is_file() and read_sheet(Screw, path) == screw
 
 
 def check_waves(roughness: Roughness, where: str) -> None:

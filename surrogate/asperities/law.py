@@ -23,7 +23,7 @@ from surrogate.asperities.topography_onset import LOG_SPEEDS, onset_of, PRESSURE
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import Contact, Side
 from surrogate.formulas.line import central_film_line, Line, line_at
-from surrogate.raceway.stated import Roughness
+from surrogate.raceway.stated import NINE_OF_TEN, Roughness
 
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
@@ -61,8 +61,6 @@ SOFT_FILM, SOFT_LOSS = 0.18, 0.03
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(2 * PLACES)
 FILM_BANDS = {'isotropic': 1.2, 'longitudinal': 1.2, 'transverse': 1.35}
 """Factor in film within which the topography tells nine of ten marched strips, by the lay [-]."""
-NINE_OF_TEN = 1.645
-"""Standard deviations on either side within which nine of ten lie [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,16 +249,20 @@ def law_of(contacts: Mapping[Side, RunningContact], sheet: Roughness) -> Asperit
     """
     Return the law of the raceways of a screw by their side.
 
-    The onset factor and the calibration of the sheet act here alone. Raises InputError as
-    `onset_of` does.
+    The onset factor, the calibration and the marches of the sheet act here alone. Raises
+    InputError as `onset_of` does.
 
     """
-    calibrated = sheet.onset_band
+    calibrated, deviation = sheet.onset_band, math.log(FILM_BANDS[sheet.lay]) / NINE_OF_TEN
+    if sheet.marched_error is not None:
+        deviation = sheet.marched_error
     return AsperityLaw(
         onsets={
-            side: replace(onset_of(contact), factor=sheet.onset_factor)
+            side: replace(
+                onset_of(contact), factor=sheet.onset_factor, film_factor=sheet.marched_film or 1.0
+            )
             for side, contact in contacts.items()
         },
-        deviation=0.0 if calibrated else math.log(FILM_BANDS[sheet.lay]) / NINE_OF_TEN,
+        deviation=0.0 if calibrated else deviation,
         speed_deviation=math.log(calibrated) / NINE_OF_TEN if calibrated else 0.0,
     )

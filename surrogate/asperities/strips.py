@@ -81,12 +81,15 @@ class RacewayStrip:
         film = self.law.film_over_law(self.strip.line, onset, self.oil, self.film_floor)
         return float(film)
 
-    def march(self, expected: float, *, transits: float = TRANSITS) -> tuple[float, SpeedRamp]:
+    def march(
+        self, expected: float, *, transits: float = TRANSITS, enough: float = math.inf
+    ) -> tuple[float, SpeedRamp]:
         """
         Return the onset speed [m/s], NaN where none was found, and the march that has it.
 
-        The speed falls about the `expected` one [m/s]. A span without the onset is moved: up where
-        the strip touches at its first speed, or too thin a film stalls the march before.
+        The speed falls about the `expected` one [m/s], until RCS is `enough` [-]. A span without
+        the onset is moved: up where the strip touches at its first speed, or too thin a film
+        stalls the march before.
 
         """
         for _ in range(1 + MOVES):
@@ -98,6 +101,8 @@ class RacewayStrip:
                 self.tile.height_at,
                 transits=transits,
                 settings=self.settings,
+                enough=enough,
+                turn=TURN,
             )
             onset = ramp.onset(transits=TURN) if ramp.speeds.size else math.nan
             touches = not ramp.speeds.size or ramp.means(TURN)[1][0] >= ONSET_RCS

@@ -53,5 +53,6 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         viscosity=lubricant.kinematic_viscosity_40,
         rms=screw.roughness.rms,
         calibrated=screw.roughness.onset_band is not None,
+        marched=screw.roughness.marched_film is not None,
         lead=screw.lead,
     )

@@ -163,7 +163,7 @@ def _check(args: argparse.Namespace) -> None:
         return
     for written in (args.out, _oil_sheet(args.out)):
         for name in ('screw', 'oil'):
-            if written.resolve() == Path(getattr(args, name)).resolve():
+            if written.resolve() == Path(getattr(args, name) or '').resolve():
                 raise InputError(
                     f'--out: {written} is the datasheet given as --{name}, allowed is another file'
                 )

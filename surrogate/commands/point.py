@@ -11,8 +11,16 @@ from typing import Any
 
 from surrogate.commands.output import add_json, show, tell
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
+from surrogate.parameters import (
+    load_lubricant,
+    load_screw,
+    Lubricant,
+    OperatingPoint,
+    Screw,
+    screw_and_oil,
+)
 from surrogate.progress import Progress
+from surrogate.surface.file import read
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -57,10 +65,15 @@ def add_point_command(subparsers: Any) -> None:
 def add_inputs(parser: argparse.ArgumentParser) -> None:
     """Add the datasheets of screw and oil."""
     parser.add_argument(
-        '--screw', default='nominal', metavar='NAME|FILE', help='screw datasheet (default nominal)'
+        '--screw',
+        default='nominal',
+        metavar='NAME|FILE',
+        help='screw datasheet (default nominal), or a surface (.npz) with its marches',
     )
     parser.add_argument(
-        '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
+        '--oil',
+        metavar='NAME|FILE',
+        help='oil datasheet (default iso_vg_68, or that of the surface)',
     )
     add_verbose(parser)
 
@@ -77,9 +90,18 @@ def add_verbose(parser: argparse.ArgumentParser) -> None:
 
 def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
     """Return the sheets of screw and oil; raises InputError, also for what no screw has."""
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    screw, lubricant = _sheets(args.screw)
+    if args.oil:
+        lubricant = load_lubricant(args.oil)
     examine(screw, verbose=args.verbose)
     return screw, lubricant
+
+
+def _sheets(screw: str) -> tuple[Screw, Lubricant]:
+    """Return the sheet of a screw with the default oil, or both sheets of a surface."""
+    if not screw.endswith('.npz'):
+        return load_screw(screw), load_lubricant('iso_vg_68')
+    return screw_and_oil(read(screw).header['inputs'])
 
 
 def examine(screw: Screw, *, verbose: bool = False) -> None:

@@ -5,6 +5,7 @@
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 import functools
 import math
 from pathlib import Path
@@ -17,7 +18,7 @@ from surrogate.commands.point import add_inputs, add_verbose, load_inputs
 from surrogate.commands.surface_inspect import add_file, add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
-from surrogate.parameters import Lubricant
+from surrogate.parameters import is_shipped, Lubricant, screw_and_oil
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, onset_of_surface, Surface
 from surrogate.surface.file import read, TIERS, write
@@ -80,12 +81,14 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         help='also write companions at 100, 80, 60 and 40 %% of the preload, by formulas alone, '
         'from which health tells the preload',
     )
-    parser.add_argument(
-        '--march',
+    marches = parser.add_mutually_exclusive_group()
+    marches.add_argument(
+        '--law-only',
         action='store_true',
-        help='full tier: also march three strips of this raceway, minutes, and report where '
-        'contact begins beside what the law tells',
+        help='full tier: leave out the marches of strips of this raceway, minutes, which correct '
+        'where contact begins; a shipped, calibrated or marched screw has none anyway',
     )
+    marches.add_argument('--march', action='store_true', help='march such a screw as well')
     add_workers(parser)
     parser.set_defaults(handler=_build)
 
@@ -105,6 +108,7 @@ def _build(args: argparse.Namespace) -> int:
         ranges['temperature_range'] = (low + ZERO_CELSIUS, high + ZERO_CELSIUS)
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     settings = default_settings(args.tier, screw, ranges)
+    measured = is_shipped(screw) or screw.roughness.measured
     progress = Progress(0, 'slices').show if sys.stderr.isatty() else lambda done, total: None
     with _workers(args) as pool:
         data = build_surface(
@@ -115,19 +119,20 @@ def _build(args: argparse.Namespace) -> int:
             progress=progress,
             pool=pool,
             out=out,
-            march=args.march,
+            march=args.march or not (args.law_only or measured),
         )
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
     print(f'{onset_of_surface(Surface(data)).sentence()}.')
+    for line in march_lines(data.header.get('march', {})):
+        print(line)
     tell(surface_warnings(data) if args.verbose else [])
     if args.with_preloads:
         from surrogate.builder.companions import build_companions
 
-        for file in build_companions(screw, lubricant, ranges, out):
+        marched = replace(screw, roughness=screw_and_oil(data.header['inputs'])[0].roughness)
+        for file in build_companions(marched, lubricant, ranges, out):
             print(f'{file}: companion at another preload')
-    if args.march:
-        print('\n'.join(march_lines(data.header['march'])))
     return 0
 
 
@@ -155,8 +160,10 @@ def _workers(args: argparse.Namespace) -> Iterator[Any]:
     if not spreads(args.tier):
         if args.workers is not None or args.dask is not None:
             raise InputError(f'--workers and --dask have no meaning for tier {args.tier}')
-        if args.march:
-            raise InputError(f'--march has no meaning for tier {args.tier}')
+        for word in ('march', 'law_only'):
+            if getattr(args, word):
+                option = f'--{word.replace("_", "-")}'
+                raise InputError(f'{option} has no meaning for tier {args.tier}')
         yield None
         return
     from surrogate.tasks.workers import open_pool

@@ -16,12 +16,12 @@ import math
 
 import numpy as np
 from scipy.stats import t as student
-from surrogate.asperities.law import NINE_OF_TEN
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.identify.problem import DragProblem
 from surrogate.raceway.fractal import Lay
+from surrogate.raceway.stated import NINE_OF_TEN
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import digits, RPM

@@ -3,6 +3,7 @@
 """Roughness of raceway and ball as a datasheet of a screw states it, by the standard."""
 
 from dataclasses import dataclass, fields
+import math
 from typing import ClassVar, Literal
 
 from surrogate.datasheet import check_likely, Checked, choice, quantity, text
@@ -16,6 +17,10 @@ HARDNESS = 7e9
 """Hardness of rolling bearing steel of 60 HRC [Pa]."""
 ONSET_FACTORS = 0.05, 20.0
 """Least and largest onset speed over that which the topography tells [-]."""
+NINE_OF_TEN = 1.645
+"""Standard deviations on either side within which nine of ten lie [-]."""
+FILM_FACTORS = 0.2, 5.0
+"""Least and largest film at the onset of marched strips over that which the law tells [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,9 +38,13 @@ class Roughness(RoughnessSpectrum):
     was fitted on the machine has the day, `calibrated`, and the factor within which nine of ten
     lie, `onset_band` [-].
 
+    `marched_film` is the film at the onset of marched strips of this raceway over that which the
+    law tells [-], `marched_error` the standard error of its logarithm for one more strip [-].
+
     """
 
     LIKELY: ClassVar[tuple[str, ...]] = ('rms_low', 'rms_high')
+    MARCHED: ClassVar[tuple[str, ...]] = ('marched_film', 'marched_error')
 
     state: State = choice(
         'run_in',
@@ -114,6 +123,22 @@ class Roughness(RoughnessSpectrum):
         default=None,
         means='day of the fit; with `onset_band`',
     )
+    marched_film: float | None = quantity(
+        '',
+        1.0,
+        *FILM_FACTORS,
+        default=None,
+        means='film at which contact begins over that of the law, marched on this raceway in its '
+        'state by `surface build`',
+    )
+    marched_error: float | None = quantity(
+        '',
+        1.0,
+        0.0,
+        5.0,
+        default=None,
+        means='standard error of the logarithm of `marched_film`, as one more strip has it',
+    )
 
     def __post_init__(self) -> None:
         """Check every range, and what is stated together."""
@@ -132,12 +157,13 @@ class Roughness(RoughnessSpectrum):
                 'profile that was traced after running in'
             )
         check_likely(self, 'roughness', 'rms_low', 'rms', 'rms_high')
-        if (self.calibrated is None) != (self.onset_band is None):
-            alone = 'calibrated' if self.onset_band is None else 'onset_band'
-            raise InputError(
-                f'roughness: {alone} is given alone, allowed are both of calibrated and '
-                'onset_band or neither'
-            )
+        for pair in (('calibrated', 'onset_band'), self.MARCHED):
+            stated = [name for name in pair if getattr(self, name) is not None]
+            if len(stated) == 1:
+                raise InputError(
+                    f'roughness: {stated[0]} is given alone, allowed are both of {pair[0]} and '
+                    f'{pair[1]} or neither'
+                )
 
     @property
     def spectrum(self) -> RoughnessSpectrum:
@@ -147,10 +173,21 @@ class Roughness(RoughnessSpectrum):
 
     @property
     def calibration(self) -> str:
-        """Say by what the onset was calibrated, empty where the topography alone tells it."""
-        if self.calibrated is None:
+        """Say by what the onset is corrected, empty where the topography alone tells it."""
+        if self.calibrated is not None:
+            return f'onset calibrated on {self.calibrated} within {self.onset_band:.3g}'
+        if self.marched_film is None or self.marched_error is None:
             return ''
-        return f'onset calibrated on {self.calibrated} within {self.onset_band:.3g}'
+        band = math.exp(NINE_OF_TEN * self.marched_error)
+        return (
+            f'film at the onset {self.marched_film:.2f} times that by the topography, marched on '
+            f'this raceway within {band:.2f}'
+        )
+
+    @property
+    def measured(self) -> bool:
+        """Return True if a calibration or marches of this raceway correct the law of its onset."""
+        return self.calibrated is not None or self.marched_film is not None
 
     @property
     def cutting_pressure(self) -> float:

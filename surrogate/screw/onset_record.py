@@ -18,7 +18,7 @@ from surrogate.screw.screw_onset import (
     onset_point,
     with_raceway,
 )
-from surrogate.surface.contact_onset import law_doubt
+from surrogate.surface.contact_onset import law_doubt, MARCHED
 from surrogate.surface.lookup import both_bands
 from surrogate.units import digits, GIGA, MICRO, RPM, ZERO_CELSIUS
 
@@ -54,6 +54,7 @@ def onset_record(
         states[state] = {
             **onset_point(contacts, *place),
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
+            'marched': raceway.roughness.marched_film is not None,
             **law_band(contacts, *place),
             'band': list(bands.whole),
             **bands.record(),
@@ -91,8 +92,7 @@ def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
-    calibrated = sheet.onset_band is not None
-    found = [law_doubt(rms=sheet.rms, calibrated=calibrated)]
+    found = [law_doubt(rms=sheet.rms, measured=sheet.measured)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:
@@ -142,8 +142,8 @@ def _told(found: Mapping[str, Any]) -> str:
     cut = found['cutting_pressure_Pa']
     low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
     return (
-        f'contact begins at {digits(found["speed_rad_s"] / RPM)} rev/min '
-        f'({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
+        f'{MARCHED * found["marched"]}contact begins at {digits(found["speed_rad_s"] / RPM)} '
+        f'rev/min ({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
         f'cut at {GIGA * cut:g} GPa'
     )
 

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import NINE_OF_TEN
+from surrogate.ehl import ContactLubricant
 from surrogate.files import InputError
+from surrogate.formulas.geometry import Side
 from surrogate.formulas.inlet import speed_before_inlet, starved_speed
 from surrogate.formulas.line import central_film_line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
 from surrogate.parameters import Lubricant, Screw
+from surrogate.raceway.stated import NINE_OF_TEN, Roughness
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 
@@ -44,7 +46,9 @@ def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperatur
 
 
 def with_raceway(screw: Screw, **changes: Any) -> Screw:
-    """Return a screw with other keys of its raceway roughness."""
+    """Return a screw with other keys of its raceway roughness; marches hold in their state."""
+    if changes.get('state', screw.roughness.state) != screw.roughness.state:
+        changes = {**dict.fromkeys(Roughness.MARCHED), **changes}
     return replace(screw, roughness=replace(screw.roughness, **changes))
 
 
@@ -80,18 +84,31 @@ def onset_point(
 
     """
     screw, oil = opened.sheet, oil_at(lubricant, temperature)
-    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
-    force, film = float(normal_force(screw, loaded)), 0.0
-    entrainment, side = max(
-        (onset.speed(opened.geometry[side], force, oil, lubricant.film_floor), side)
-        for side, onset in opened.law.onsets.items()
-    )
+    force, film = loaded_force(screw, load), 0.0
+    entrainment, side = onset_side(opened, oil, lubricant.film_floor, load)
     if entrainment:
         line = line_at(opened.geometry[side], force, 0.0)
         film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
     before = speed_before_inlet(screw, lubricant, side, force, entrainment, temperature)
     speed = before / opened.rates.entrainment
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
+
+
+def loaded_force(screw: Screw, load: float) -> float:
+    """Return the normal force of a ball of the loaded nut [N] under an axial load [N]."""
+    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
+    return float(normal_force(screw, loaded))
+
+
+def onset_side(
+    opened: Contacts, oil: ContactLubricant, floor: float, load: float
+) -> tuple[float, Side]:
+    """Return the faster onset of both sides [m/s] under an axial load [N], and its side."""
+    force = loaded_force(opened.sheet, load)
+    return max(
+        (onset.speed(opened.geometry[side], force, oil, floor), side)
+        for side, onset in opened.law.onsets.items()
+    )
 
 
 def law_band(

@@ -87,9 +87,7 @@ def sensitivity_record(
         'inputs': rows,
         'band': list(bands.whole),
         **bands.record(),
-        'law_doubt': law_doubt(
-            rms=screw.roughness.rms, calibrated=screw.roughness.onset_band is not None
-        ),
+        'law_doubt': law_doubt(rms=screw.roughness.rms, measured=screw.roughness.measured),
     }
 
 

@@ -88,7 +88,9 @@ class Varied:
     def at(self, case: ScrewCase, value: float) -> ScrewCase:
         """Return a case in which the input has a value [SI]."""
         if self.name in ('hardness', 'run_in_pressure'):
-            return replace(case, screw=run_in_at(case.screw, value))
+            # The same state, cut at another pressure: marches hold.
+            marches = {name: getattr(case.roughness, name) for name in Roughness.MARCHED}
+            return replace(case, screw=with_raceway(run_in_at(case.screw, value), **marches))
         return case.changed(self.part, **dict.fromkeys((self.name, *self.also), value))
 
 

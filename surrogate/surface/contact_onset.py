@@ -31,10 +31,10 @@ WORST = 1.2
 """Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
 RMS_POWER = 0.7
 """Exponent of the speed of the onset in the Rq that has it [-]."""
-TRACE, SLOW_TORQUE = 'a trace of the raceway as it runs', 'the torque at slow speeds'
-"""Measurements that narrow the band of a raceway traced new and run in, and of any other."""
 MARCHED_RMS = 0.05e-6, 0.4e-6
 """Rq of the raceways that were marched [m]."""
+MARCHED = 'marched on this raceway: '
+"""What stands before an onset by strips of the very raceway."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +71,7 @@ class ContactOnset:
     speed that the screw allows, and up to which a zone is looked for, `reach` [rad/s]. Without a
     zone contact must begin `slower`, a factor [-], as it does at `colder` [K], NaN if at no
     temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the raceway [m], and
-    whether its onset is `calibrated`.
+    whether its onset is `calibrated`, or `marched` on strips of it.
 
     """
 
@@ -88,6 +88,7 @@ class ContactOnset:
     viscosity: float
     rms: float
     calibrated: bool = False
+    marched: bool = False
     lead: float
 
     def sentence(self, *, as_feed: bool = False) -> str:
@@ -98,10 +99,11 @@ class ContactOnset:
             if math.isfinite(self.band[0]):
                 between = f' ({self._between(self.band)}{self._remedy()})'
             begins = (
-                f'Contact begins at {self._speed(self.speed, as_feed)}{between} '
-                f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
+                f'{MARCHED * self.marched}contact begins at {self._speed(self.speed, as_feed)}'
+                f'{between} at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
-            law = law_doubt(rms=self.rms, calibrated=self.calibrated)
+            begins = begins[0].upper() + begins[1:]
+            law = law_doubt(rms=self.rms, measured=self.calibrated or self.marched)
             begins += f'; {law}' * bool(law)
         limit = self._speed(self.fastest, as_feed)
         return f"{begins}; this screw's limit is {limit}; {self._zone(as_feed)}"
@@ -157,15 +159,16 @@ class ContactOnset:
         return f'{text}: contact begins slow enough {remedies}'
 
 
-def law_doubt(*, rms: float, calibrated: bool = False) -> str:
+def law_doubt(*, rms: float, measured: bool = False) -> str:
     """
     Say where the law of the onset is beyond the marches; empty where it is not.
 
-    Rq [m] as the sheet has it, 0 if smooth; a calibration takes the place of marches.
+    Rq [m] as the sheet has it, 0 if smooth; what was measured or marched on the raceway itself
+    takes the place of other marches.
 
     """
     low, high = MARCHED_RMS
-    if calibrated or not rms or low <= rms <= high:
+    if measured or not rms or low <= rms <= high:
         return ''
     return (
         f'Rq is {MICRO * rms:.3g} um, and raceways of {MICRO * low:g} to {MICRO * high:g} um were '
@@ -243,6 +246,7 @@ def onset_of_surface(
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
         calibrated=screw['roughness']['onset_band'] is not None,
+        marched=screw['roughness'].get('marched_film') is not None,
         lead=surface.lead,
     )
 

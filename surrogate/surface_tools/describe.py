@@ -160,8 +160,7 @@ def _quality(record: Mapping[str, Any]) -> Iterator[str]:
             '  accuracy     the worst held-out point has '
             f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
         )
-    if record['march'] is not None:
-        yield from march_lines(record['march'])
+    yield from (f'  {line}' for line in march_lines(record['march'] or {}))
     yield '  measured interpolation error                    max         p95'
     for name, error in record['errors'].items():
         yield f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
@@ -176,18 +175,15 @@ def _quality(record: Mapping[str, Any]) -> Iterator[str]:
 
 def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
     """Yield a line for each strip of the raceway that was marched, beside the law."""
-    if not march:
-        yield '  marched      no strip: all failed'
     for name, strip in march.items():
         marched, by_law = strip['marched_m_s'], strip['told_m_s']
-        onset = 'does not begin'
+        begins = 'does not begin'
         if marched is not None:
-            films = f'{strip["film_factor"]:.2f} times the film of the law'
-            onset = (
-                f'begins at {marched:.3g} m/s, with {films}, told over marched '
-                f'{by_law / marched:.2f}'
+            begins = (
+                f'begins at {marched:.3g} m/s, with {strip["film_factor"]:.2f} times the film of '
+                f'the law, told over marched {by_law / marched:.2f}'
             )
         yield (
-            f'  marched      {name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: '
-            f'contact {onset}, told {by_law:.3g} m/s; {strip["status"]}'
+            f'{name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: contact {begins}, '
+            f'told {by_law:.3g} m/s; {strip["status"]}'
         )

@@ -1,59 +1,130 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Strips of the very raceway of a surface, marched while their speed falls, beside the law.
+Strips of the very raceway of a surface, marched while their speed falls, correct the law.
 
 The law of contact stands on marches of other raceways. A strip is a tile of this one, cut as its
-sheet says, in the middle of a contact with the screw under preload. Its short waves are left out
-so that it takes minutes; the law tells the onset of the same tile.
+sheet says, in the middle of a contact with the screw under preload, on the side where contact
+begins faster. Its short waves are left out so that it takes a minute; the law tells the onset of
+the same tile. The film at the marched onsets over that of the law corrects the law, and one finer
+strip shows how far that depends on the waves that are left out.
 
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict
 import math
 from typing import Any
 
-from surrogate.asperities.running_in import TILES
+import numpy as np
+from surrogate.asperities.law import ONSET_RCS
+from surrogate.asperities.running_in import RunningContact, TILES
 from surrogate.asperities.strips import raceway_strips, TRANSITS, WAVES
-from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
+from surrogate.raceway.stated import FILM_FACTORS
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_side
+
+ENOUGH = 2 * ONSET_RCS
+"""RCS at which a march ends [-]: slower speeds do not tell the onset."""
+FINER = 'finer strip'
+"""Name of the strip with one wave more."""
+SCATTER, SCATTER_STRIPS = 0.1, 2
+"""Standard deviation of the logarithm of the film factor between strips of one raceway [-], and as
+how many strips it counts beside those of this one [-]."""
+FEWEST = 2
+"""Strips with an onset that correct the law, at least [-]."""
 
 
 def march_tasks(
-    screw: Screw, lubricant: Lubricant, *, waves: float = WAVES, transits: float = TRANSITS
+    screw: Screw,
+    lubricant: Lubricant,
+    *,
+    waves: float = WAVES,
+    transits: float = TRANSITS,
+    draws: int = TILES,
 ) -> dict[str, dict[str, Any]]:
-    """Return the tasks of the strips of a raceway, which `march_task` solves."""
-    if not screw.roughness.rms and screw.ball_roughness is None:
-        raise InputError('--march: raceway and ball are smooth, allowed is a rough one')
-    sheets = {'screw': asdict(screw), 'lubricant': lubricant.stated()}
-    work = {'waves': waves, 'transits': transits}
-    return {f'strip {1 + draw}': {**sheets, **work, 'draw': draw} for draw in range(TILES)}
+    """
+    Return the tasks of the strips of a raceway, which `march_task` solves, the longest first.
+
+    None where raceway and ball are smooth. Raises InputError as `running_tiles` does.
+
+    """
+    if not screw.composite_rms:
+        return {}
+    oil = oil_at(lubricant, lubricant.reference_temperature)
+    _, side = onset_side(Contacts.of(screw), oil, lubricant.film_floor, 0.0)
+    sheets = {'screw': screw.stated(), 'lubricant': lubricant.stated()}
+    work = {'side': side, 'transits': transits}
+    running = RunningContact.of(screw, side)
+    shortest = running.wave_above(running.half_length / waves)
+    finer = running.wave_above(running.half_length / (waves * screw.roughness.scale_ratio))
+    strips = {f'strip {1 + draw}': (draw, waves) for draw in range(draws)}
+    if finer < shortest:
+        strips = {FINER: (0, waves * screw.roughness.scale_ratio), **strips}
+    return {
+        name: {**sheets, **work, 'draw': draw, 'waves': most}
+        for name, (draw, most) in strips.items()
+    }
 
 
 def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
-    March a strip on the side of the screw, at the temperature of the oil sheet.
+    March a strip at the temperature of the oil sheet until it clearly touches.
 
     Returns onsets, marched and told by the law for this tile and these nodes [m/s], and the film
-    at the marched one over that of the law [-], None where RCS did not pass 0.01; shortest wave
-    [m]; how it ended.
+    at the marched one over that of the law [-], None where RCS did not pass 0.01; side; shortest
+    wave [m]; steps; how it ended.
 
     """
     screw, lubricant = screw_and_oil(inputs)
     oil = oil_at(lubricant, lubricant.reference_temperature)
     strip, *_ = raceway_strips(
-        screw, 'screw', oil, lubricant.film_floor, draws=[inputs['draw']], waves=inputs['waves']
+        screw,
+        inputs['side'],
+        oil,
+        lubricant.film_floor,
+        draws=[inputs['draw']],
+        waves=inputs['waves'],
     )
     factor = screw.roughness.onset_factor
     told = factor * strip.told
-    marched, ramp = strip.march(told, transits=inputs['transits'])
+    marched, ramp = strip.march(told, transits=inputs['transits'], enough=ENOUGH)
     known = not math.isnan(marched)
     return {
         'marched_m_s': marched if known else None,
         'film_factor': strip.film_factor(marched / factor) if known else None,
         'told_m_s': told,
+        'side': inputs['side'],
         'shortest_wave_m': strip.shortest,
+        'steps': ramp.steps,
         'status': ramp.status.value,
     }
+
+
+def marched_film(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """
+    Return the correction of the law by marched strips, as a sheet states it; empty if by too few.
+
+    `marched_film` is the mean film at the onset over that of the law [-], `marched_error` the
+    standard error of its logarithm for one more strip [-]: of the mean, of the scatter between
+    strips, and of the difference between the finer strip and the coarse one of the same tile.
+
+    """
+    least, most = FILM_FACTORS
+    logs = {
+        name: math.log(strip['film_factor'])
+        for name, strip in strips.items()
+        if strip['film_factor'] is not None and least <= strip['film_factor'] <= most
+    }
+    finer = logs.pop(FINER, math.nan)
+    if len(logs) < FEWEST:
+        return {}
+    values = np.array([*logs.values()])
+    squares = np.sum((values - values.mean()) ** 2) + SCATTER_STRIPS * SCATTER**2
+    scatter = math.sqrt(squares / (values.size - 1 + SCATTER_STRIPS))
+    change = finer - logs.get('strip 1', math.nan)
+    error = math.hypot(
+        scatter * math.sqrt(1 + 1 / values.size), 0.0 if math.isnan(change) else change
+    )
+    return {'marched_film': math.exp(values.mean()), 'marched_error': error}

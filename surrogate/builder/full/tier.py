@@ -14,12 +14,13 @@ import numpy as np
 from surrogate.builder.closed_form import provenance
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain, WORK
-from surrogate.builder.full.march import march_task, march_tasks
+from surrogate.builder.full.march import march_task, march_tasks, marched_film
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.child import Task
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import Progress
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
@@ -79,8 +80,8 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    With `march`, strips of the raceway are marched and stand in the header beside the law. Says on
-    stderr where the accuracy aimed at was not reached and nodes have no number.
+    With `march`, strips of the raceway are marched first, stand in the header and correct the law.
+    Says on stderr where the accuracy aimed at was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
@@ -88,13 +89,13 @@ def build_full_surface(
     began = time.perf_counter()
     with TaskStore(out, WORK) as store:
         run = TaskRun(pool=pool, store=store)
-        strips = march_tasks(screw, lubricant) if march else {}
-        data = build_full(screw, lubricant, settings, run)
-        marched = run.solve(march_task, strips, 'strip') if march else {}
-    if march:
-        strips_marched = {name: result for name, result in marched.items() if result}
-        data = replace(data, header={**data.header, 'march': strips_marched})
-    for sentence in shortfalls(data, settings):
+        tasks = march_tasks(screw, lubricant) if march else {}
+        results = run.solve(march_task, tasks, 'strip') if tasks else {}
+        strips = {name: result for name, result in results.items() if result}
+        data = build_full(with_raceway(screw, **marched_film(strips)), lubricant, settings, run)
+    if tasks:
+        data = replace(data, header={**data.header, 'march': strips})
+    for sentence in shortfalls(data):
         print(sentence, file=sys.stderr)
     work = {
         'worker_seconds': round(run.seconds, 3),
@@ -106,8 +107,11 @@ def build_full_surface(
     return replace(data, provenance=provenance(time.perf_counter() - began) | work)
 
 
-def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
-    """Yield a sentence on accuracy that was not reached and one on nodes that are missing."""
+def shortfalls(data: SurfaceData) -> Iterator[str]:
+    """Yield a sentence on marches, accuracy that was not reached and nodes that are missing."""
+    marched = data.header['inputs']['screw']['roughness'].get('marched_film')
+    if 'march' in data.header and marched is None:
+        yield 'too few strips show where contact begins: the law alone tells it'
     reached = data.header['reached']
     if reached is None:
         yield 'accuracy is not known: no held-out point was solved'

@@ -31,7 +31,6 @@ class MarchStatus(Enum):
     SOME_STEPS = 'A few steps ended before their errors were small; they are in the averages.'
     STALLED = 'The march was given up where several steps in a row did not converge.'
     NO_SMOOTH_FILM = 'The smooth contact that the march starts from was not solved.'
-    OUT_OF_TIME = 'The time cap was reached before all transits were made.'
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,8 +41,8 @@ class MarchSettings:
     Nodes along and across the track, both odd; nodes that the columns move on in a step;
     `domain` as in `Settings`, None for one with room for all summits; places beside each other on
     the raceway over which the transits are shared; film floor [m]; relative tolerances of flux,
-    load and contact gap of a step; slide-roll ratio at which traction is measured [-]; cap of the
-    whole call [s]. `moving` False lets the raceway stand still, for comparison. Eyring stress of
+    load and contact gap of a step; slide-roll ratio at which traction is measured [-].
+    `moving` False lets the raceway stand still, for comparison. Eyring stress of
     an oil that the flow of its ripples thins [Pa], infinity for a Newtonian one; way sideways over
     way along of the raceway against the ball [-], the oil goes half of it.
 
@@ -59,7 +58,6 @@ class MarchSettings:
     load_tolerance: float = 1e-3
     gap_tolerance: float = 3e-2
     slide_roll_ratio: float = 0.019
-    time_cap: float = math.inf
     moving: bool = True
     ripple_eyring_stress: float = math.inf
     side_slip: float = 0.0
@@ -79,8 +77,6 @@ class MarchSettings:
             )
         if not abs(self.side_slip) <= 1:
             raise InputError(f'side_slip is {self.side_slip!r}, allowed is -1 to 1')
-        if not self.time_cap > 0:
-            raise InputError(f'time_cap is {self.time_cap!r} s, allowed is above 0')
 
     def steady(self, domain: tuple[float, float, float] | None = None) -> Settings:
         """Return the settings of the steady solver on the grid of the march."""

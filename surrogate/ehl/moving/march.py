@@ -69,7 +69,6 @@ def march_contact(
             settings,
             start,
         )
-        march.deadline = began + settings.time_cap
         march.run(transits / settings.places)
     return march.solution(contact, time.perf_counter() - began)
 
@@ -95,7 +94,6 @@ def march_strip(
     began = time.perf_counter()
     with at(stage='rolling contact'):
         march = strip_march(strip, lubricant, (entrainment_speed,), raceway, settings)
-        march.deadline = began + settings.time_cap
         march.run(transits / settings.places)
     return march.solution(strip, time.perf_counter() - began)
 

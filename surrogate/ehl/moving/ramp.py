@@ -128,11 +128,20 @@ def ramp_strip(
     *,
     transits: float,
     settings: MarchSettings,
+    enough: float = math.inf,
+    turn: float = 2.0,
 ) -> SpeedRamp:
-    """March a strip while its speed goes from one of `speeds` to the other [m/s]; see above."""
+    """
+    March a strip while its speed goes from one of `speeds` to the other [m/s]; see above.
+
+    It ends sooner where the mean RCS over the transits of a `turn` is `enough` [-].
+
+    """
     check_transits(transits, settings)
     with at(stage='rolling contact'):
-        return _ramp(strip_march(strip, lubricant, knots(speeds), raceway, settings), transits)
+        march = strip_march(strip, lubricant, knots(speeds), raceway, settings)
+        march.enough, march.turn = enough, max(1, round(turn * _steps_of_transit(march)))
+        return _ramp(march, transits)
 
 
 def knots(speeds: tuple[float, float]) -> Sequence[float]:
@@ -146,7 +155,6 @@ def knots(speeds: tuple[float, float]) -> Sequence[float]:
 
 def _ramp(march: March, transits: float) -> SpeedRamp:
     began = time.perf_counter()
-    march.deadline = began + march.settings.time_cap
     march.run(transits / march.settings.places)
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]
@@ -159,11 +167,15 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
         rcs=_over_places(steps, 'rcs'),
         asperity_share=_over_places(steps, 'asperity_share'),
         loss_factor=_over_places(steps, 'rolling_loss') / losses,
-        transit=2 / (march.settings.stride * march.grid.dx),
+        transit=_steps_of_transit(march),
         steps=march.steps,
         steps_failed=march.failed,
         wall_time=time.perf_counter() - began,
     )
+
+
+def _steps_of_transit(march: March) -> float:
+    return 2 / (march.settings.stride * march.grid.dx)
 
 
 def _smooth_at(march: March, speeds: Array) -> tuple[Array, Array]:

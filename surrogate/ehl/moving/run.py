@@ -4,7 +4,6 @@
 
 from dataclasses import dataclass, field, replace
 import math
-import time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,13 +58,19 @@ class SmoothPath:
 
 @dataclass(kw_only=True)
 class March:
-    """A march under way: what has been measured at each place, and what it took."""
+    """
+    A march under way: what has been measured at each place, and what it took.
+
+    It leaves a place once the mean RCS of the last `turn` steps is `enough` [-].
+
+    """
 
     case: ScaledCase
     grid: Grid
     settings: MarchSettings
     path: SmoothPath | None
-    deadline: float = math.inf
+    enough: float = math.inf
+    turn: int = 1
     places: list[list[Measure]] = field(default_factory=list)
     last: Step | None = None
     steps: int = 0
@@ -107,6 +112,13 @@ class March:
                     return
                 if moved > run_in:
                     self.places[-1].append(self.gauge.measure(step))
+                    if self._touches(self.places[-1]):
+                        break
+
+    def _touches(self, steps: list[Measure]) -> bool:
+        """Return True if RCS over the last turn is as much as is wanted."""
+        last = [step.rcs for step in steps[-self.turn :]]
+        return len(last) == self.turn and sum(last) >= self.enough * self.turn
 
     def _moves(self, transits: float) -> range:
         """Return by how many nodes the raceway has moved on at each step at a place [-]."""
@@ -158,8 +170,6 @@ class March:
         self._tell(step.newton, step.outcome.flux_error)
         if self.failed_in_a_row == STALLED:
             self.ended = MarchStatus.STALLED
-        elif time.perf_counter() > self.deadline:
-            self.ended = MarchStatus.OUT_OF_TIME
 
     def _tell(self, count: int, residual: float) -> None:
         """Tell who watches how many steps are made, and what the last one took [-]."""

@@ -52,7 +52,7 @@ def spans(monkeypatch):
     """Return the spans of marches, each with RCS as a strip that touches at 1 m/s has it."""
     marched = []
 
-    def ramp_strip(strip, oil, speeds, raceway, *, transits, settings):
+    def ramp_strip(strip, oil, speeds, raceway, *, transits, **settings):
         marched.append(speeds)
         steps = np.geomspace(*speeds, 1200)
         return SpeedRamp(
@@ -89,7 +89,7 @@ def test_the_onset_is_sought_some_spans_away_and_not_where_a_march_stalls(coarse
 def test_a_march_that_stalls_on_too_thin_a_film_is_tried_at_faster_speeds(coarse, monkeypatch):
     marched = []
 
-    def ramp_strip(strip, oil, speeds, raceway, *, transits, settings):
+    def ramp_strip(strip, oil, speeds, raceway, *, transits, **settings):
         marched.append(speeds)
         return SpeedRamp(status=MarchStatus.STALLED)
 

@@ -3,6 +3,7 @@
 """The onset of the sheets agrees with their surface, and what it advises with the law."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -17,6 +18,8 @@ from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.contact_onset import RMS_POWER
+from surrogate.surface.file import write
+from surrogate.surface_tools.describe import info_page, info_record
 
 SETTINGS = FullSettings(
     speed_range=(0.5, 100.0),
@@ -85,13 +88,15 @@ def test_efficiencies_of_many_loads_are_those_of_one(screw):
     assert EFFICIENCY(0.1, loads, screw.lead).tolist() == single
 
 
-def test_build_point_and_onset_say_one_band_of_an_own_screw(oil, stand_in, small_tiles):
-    """Its Ra is a typical one; numbers, and the measurement that narrows them most."""
+@pytest.mark.parametrize('marches', [{}, {'marched_film': 1.1, 'marched_error': 0.05}])
+def test_all_say_one_band_of_an_own_screw(oil, stand_in, small_tiles, tmp_path, marches):
+    """Build, point, onset and info; its Ra is a typical one, the raceway was marched or not."""
     given = CatalogueScrew(
         nominal_diameter=0.036, lead=0.012, nut='double', turns=3.5, dynamic_rating=30e3
     )
-    own, kelvin = screw_of(given)[0], oil.reference_temperature
-    surface = Surface(build_full(own, oil, SETTINGS, stand_in.run))
+    own, kelvin = with_raceway(screw_of(given)[0], **marches), oil.reference_temperature
+    data = build_full(own, oil, SETTINGS, stand_in.run)
+    surface = Surface(data)
     of_sheets, of_file = onset_of_sheets(own, oil, kelvin), onset_of_surface(surface, kelvin)
     state = onset_record(own, oil, 0.0, kelvin)['states'][own.roughness.state]
     assert of_sheets.band == of_file.band == tuple(state['band'])
@@ -102,3 +107,8 @@ def test_build_point_and_onset_say_one_band_of_an_own_screw(oil, stand_in, small
     assert of_file.speed == pytest.approx(of_sheets.speed, rel=1e-6)  # on a node
     for found in (of_sheets, of_file):
         assert f'; a measured {found.measure[0]} leaves ' in found.sentence()
+    write(tmp_path / 'own.npz', data)
+    assert f'  {of_file.sentence()}.' in info_page(info_record(tmp_path / 'own.npz', data))
+    assert of_file.sentence().startswith('Marched on this raceway: ') == bool(marches)
+    film = math.exp(1.645 * 0.05) if marches else 1.2
+    assert state['film_factor'] == pytest.approx(film)

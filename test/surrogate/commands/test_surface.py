@@ -4,14 +4,17 @@
 
 from dataclasses import replace
 import json
+import math
 
 import numpy as np
 import pytest
+from surrogate.commands import surface
+from surrogate.parameters import DATA as PACKAGE
 from surrogate.parameters import screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import formula_warnings
 from surrogate.screw.opened import Contacts
-from surrogate.surface import shipped_surface
+from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import read, write
 from surrogate.tasks.store import store_path, TaskStore
 
@@ -19,6 +22,7 @@ COMMAND = ('surface',)
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
 DATA = read(CLOSED_FORM)
+FULL = read(shipped_surface(tier='full'))
 
 
 def written(folder, **changes):
@@ -97,6 +101,7 @@ def test_check_without_time_is_a_failure(run, capsys, refused):
         ('build --temperature-degC 40 --temperature-range 30 50', 'temperature_and_range'),
         ('build --tier closed_form --workers 2', 'workers_dask_have'),
         ('build --tier closed_form --march', 'march_closed_form'),
+        ('build --tier closed_form --law-only', 'law_only_closed_form'),
         ('info none.npz', 'such_surface_file'),
         ('check --points 0', 'points_0'),
     ],
@@ -104,6 +109,75 @@ def test_check_without_time_is_a_failure(run, capsys, refused):
 def test_bad_words_are_one_sentence(run, words, sentence, refused):
     """In the unit that was typed; workers would do nothing for formulas."""
     refused(sentence, run, *words.split())
+
+
+@pytest.fixture
+def own_sheet(tmp_path):
+    """Return the function that writes the nominal sheet under another name, with more keys."""
+    nominal = (PACKAGE / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
+
+    def write_sheet(name='own', keys=''):
+        path = tmp_path / f'{name}.yaml'
+        text = nominal.replace('name: nominal', f'name: {name}')
+        path.write_text(text.replace('  state: new', f'{keys}  state: new'), encoding='utf-8')
+        return path
+
+    return write_sheet
+
+
+@pytest.mark.parametrize(
+    ('name', 'keys', 'options', 'marched'),
+    [
+        ('own', '', [], True),
+        ('own', '', ['--law-only'], False),
+        ('nominal', '', [], False),
+        ('nominal', '', ['--march'], True),
+        ('nominal', '  ridges: 12\n', [], True),
+        ('own', '  marched_film: 1.1\n  marched_error: 0.05\n', [], False),
+        ('own', "  calibrated: '2026-11-24'\n  onset_band: 1.2\n", [], False),
+    ],
+)
+def test_an_own_raceway_is_marched_unless_it_is_known(
+    run, tmp_path, monkeypatch, capsys, own_sheet, name, keys, options, marched
+):
+    """A shipped sheet under a name of its own is an own one, as is one with other numbers."""
+    seen = []
+
+    def build_surface(*given, march, **known):
+        seen.append(march)
+        return DATA
+
+    monkeypatch.setattr(surface, 'build_surface', build_surface)
+    words = (
+        '--screw',
+        own_sheet(name, keys),
+        '--workers',
+        1,
+        '--out',
+        tmp_path / 'a.npz',
+        *options,
+    )
+    assert run('build', *words) == 0
+    assert seen == [marched]
+
+
+def test_a_page_says_what_was_marched(run, tmp_path, capsys):
+    """The sentence of the onset with the one band, the roughness, and a line for each strip."""
+    header = json.loads(json.dumps(FULL.header))
+    header['inputs']['screw']['roughness'] |= {'marched_film': 1.1, 'marched_error': 0.05}
+    strip = {'marched_m_s': None, 'told_m_s': 0.1, 'shortest_wave_m': 1e-5, 'status': 'Well.'}
+    header['march'] = {'strip 1': strip}
+    write(tmp_path / 'map.npz', replace(FULL, header=header))
+    assert run('info', tmp_path / 'map.npz') == 0
+    page = capsys.readouterr().out
+    surface = Surface(FULL)
+    onset = surface.onset_speed(0.0, 313.15) * 30 / math.pi
+    low, high = (factor * onset for factor in surface.onset_band)
+    said = f'Marched on this raceway: contact begins at {onset:.0f} rev/min ({low:.3g} to '
+    assert f'  {said}{high:.0f}; a measured ' in page
+    assert page.lower().count('marched on this raceway: ') == 1
+    assert 'film at the onset 1.10 times that by the topography, marched on this raceway' in page
+    assert '  strip 1, waves down to 10 um: contact does not begin, told 0.1 m/s; Well.' in page
 
 
 def test_info_is_a_page_a_person_reads(run, capsys):

@@ -65,6 +65,15 @@ def test_a_calibration_has_its_day_and_its_band(refused):
     assert roughness_sentence(sheet, None).startswith(roughness_sentence(STATED, None)[:20])
     assert sheet.calibration in roughness_sentence(sheet, None)
     assert replace(STATED, onset_factor=0.6).calibration == ''
+    marched = replace(STATED, marched_film=0.95, marched_error=0.05)
+    assert marched.calibration == (
+        'film at the onset 0.95 times that by the topography, marched on this raceway within 1.09'
+    )
+    assert [one.measured for one in (sheet, marched, STATED)] == [True, True, False]
+    with refused('marched_alone', name='marched_film'):
+        replace(STATED, marched_film=0.95)
+    with refused('marched_alone', name='marched_error'):
+        replace(STATED, marched_error=0.05)
     with refused('given_alone', name='onset_band'):
         replace(STATED, onset_band=1.15)
     with refused('given_alone', name='calibrated'):

@@ -74,7 +74,7 @@ def test_the_page_of_a_record_by_hand(speed, high):
         'roughness': 'rough',
     }
     for one in (state, run_in):
-        one |= {'band': [0.5, 2.0], 'numerical_band': [0.8, 1.25], 'measure': []}
+        one |= {'band': [0.5, 2.0], 'numerical_band': [0.8, 1.25], 'measure': [], 'marched': False}
     run_in['measure'] = [{'measurement': 'm', 'limit_band': [0.6, 1.5]}]
     assert onset_page(record) == PAGE.format(high=high)
 
@@ -208,6 +208,26 @@ def test_a_calibrated_raceway_has_the_state_and_the_band_of_its_calibration(scre
         for one, part in ((screw, 1.0), (sheet, 0.5))
     )
     np.testing.assert_allclose(slower, rcs, rtol=1e-9)
+
+
+def test_an_onset_that_was_marched_says_so_in_its_state_alone(screw, oil, record):
+    """The other state, its range and other loads are by the law."""
+    sheet = with_raceway(screw, marched_film=1.2, marched_error=0.03, rms=0.04e-6)
+    assert extrapolated(sheet) == []
+    sheet = with_raceway(screw, marched_film=1.2, marched_error=0.03)
+    found = onset_record(sheet, oil, 0.0, KELVIN)
+    new, usual = found['states']['new'], record['states']['new']
+    assert (new['marched'], usual['marched']) == (True, False)
+    assert found['states']['run_in'] == record['states']['run_in']
+    assert new['speed_rad_s'] > 1.2 * usual['speed_rad_s']
+    assert new['film_factor'] == pytest.approx(math.exp(1.645 * 0.03))
+    # The error of the strips alone is narrower than the lookup.
+    (low, high), (least, most) = new['numerical_band'], usual['numerical_band']
+    assert least < 1 / 1.22 < low < 1 < high < 1.22 < most
+    assert new['limit_band'] == pytest.approx(usual['limit_band'], rel=0.05)
+    begins, other = onset_page(found).splitlines()[1:3]
+    assert 'new, after its first pass  marched on this raceway: contact begins at ' in begins
+    assert 'marched' not in other
 
 
 @pytest.mark.parametrize(

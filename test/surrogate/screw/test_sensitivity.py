@@ -178,6 +178,8 @@ def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
     assert hard.bounds(traced) == (low, high)
     assert running.at(run_in, 2e9).screw == run_in_at(run_in.screw, 2e9)
     assert hard.at(new, low).roughness.cutting_pressure == low
+    marched = replace(new, screw=with_raceway(screw, marched_film=1.2, marched_error=0.03))
+    assert hard.at(marched, low).roughness.marched_film == 1.2
 
 
 def test_a_long_cutoff_is_an_input_where_the_sheet_leaves_it_to_the_table(screw, oil):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sentence about contact, limit and zone follows from what the surface holds."""
 
+import copy
 from dataclasses import replace
 import math
 
@@ -84,7 +85,7 @@ def test_the_law_says_where_no_raceway_was_marched(micrometres, key, says):
     """46 marches of Rq 0.05 to 0.4 um bear it out, all lays, new and run in."""
     rms = micrometres * 1e-6
     assert law_doubt(rms=rms) == (says(key) if key else '')
-    assert law_doubt(rms=rms, calibrated=True) == ''
+    assert law_doubt(rms=rms, measured=True) == ''
 
 
 def test_the_record_has_the_numbers_of_the_sentence():
@@ -95,6 +96,17 @@ def test_the_record_has_the_numbers_of_the_sentence():
     assert record['fastest_speed_rad_s'] == KNOWN.fastest
     assert record['temperature_K'] == KNOWN.temperature
     assert record['optimal_zone'] is True
+
+
+def test_an_onset_that_was_marched_says_so(says):
+    """One number, one range, what narrows it most; beyond the Rq of other marches no doubt."""
+    changes = {'rms': 0.04e-6, 'marched': True, 'measure': ('trace', (0.8, 1.25))}
+    assert replace(KNOWN, **changes).sentence() == says('marched')
+    header = copy.deepcopy(DATA.header)
+    header['inputs']['screw']['roughness'] |= {'marched_film': 0.9, 'rms': 0.04e-6}
+    sentence = onset_of_surface(Surface(replace(DATA, header=header))).sentence()
+    assert sentence.startswith('Marched on this raceway: contact begins at ')
+    assert 'nobody knows' not in sentence
 
 
 @given(kelvin=CELSIUS)

@@ -146,7 +146,7 @@ def test_errors_above_the_allowed_are_told(screw, oil, tmp_path, here, reached, 
     """And where no point was solved, that none is known."""
     data = build(screw, oil, tmp_path / 'a.npz', here())
     known = replace(data, header={**data.header, 'reached': reached})
-    told = list(full_tier.shortfalls(known, SETTINGS))
+    told = list(full_tier.shortfalls(known))
     assert len(told) == (sentence is not None)
     assert all(sentence in one for one in told)
 
