@@ -186,9 +186,8 @@ def result_apart(task: str, inputs: Mapping[str, Any], *, memory: int, failure: 
     finally:
         worker.kill()
     if 'lost' in frame:
-        raise InputError(
-            f'{failure}: its reader {frame["lost"]}, it may use {memory / 1e6:.0f} MB of memory'
-        )
+        allowed = f', it may use {memory / 1e6:.0f} MB of memory' if memory else ''
+        raise InputError(f'{failure}: its reader {frame["lost"]}{allowed}')
     if sentence := frame['sentence']:
         lacking = sentence.startswith(MemoryError.__name__)
         reason = f'{failure}: it may use {memory / 1e6:.0f} MB of memory, it needs more'

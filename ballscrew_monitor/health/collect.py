@@ -109,7 +109,7 @@ class Collector:
 
 def prepare() -> None:
     """Compile what takes many rows."""
-    Collector(Surface.load(shipped_surface())).take_many(np.empty(0, ROW))
+    Collector(Surface.load(shipped_surface())).take_many(np.zeros(1, ROW))
 
 
 _compiled = functools.cache(compiled)

@@ -13,7 +13,6 @@ import threading
 from typing import Any
 
 from surrogate.child import result_apart
-from surrogate.files import InputError
 
 COMPILED_FROM = 5000.0
 """Events of all inputs in a second [1/s] from which on turns are judged compiled."""
@@ -71,5 +70,5 @@ class CompiledTurns:
             result_apart(f'{__name__}:load', {}, memory=0, failure='the judgement is not compiled')
             load({})
             self._loaded = True
-        except (ImportError, InputError, OSError, RuntimeError) as error:
-            self._problem = str(error)
+        except Exception as error:  # whatever a compiler raises: the node goes on interpreted
+            self._problem = str(error) or type(error).__name__

@@ -4,6 +4,8 @@
 
 import math
 from pathlib import Path
+import subprocess
+import sys
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import PointSource
@@ -129,3 +131,15 @@ def test_a_torque_that_is_nan_for_a_while_leaves_the_friction_as_it_is(motion, s
         return history.friction
 
     assert frictions(300, 700, 1900) == pytest.approx(frictions())
+
+
+def test_rows_that_come_after_the_preparation_compile_nothing():
+    code = """
+from ballscrew_monitor.health import collect
+from ballscrew_monitor.health.gather import step_many
+from ballscrew_monitor.health.spectrum import count_many
+collect.prepare()
+print(*(len(collect._compiled(function).signatures) for function in (step_many, count_many)))
+"""
+    done = subprocess.run([sys.executable, '-c', code], check=True, capture_output=True, text=True)
+    assert done.stdout.split() == ['1', '1']
