@@ -270,10 +270,10 @@ class Screw(Checked):
             )
         check_likely(self, 'screw', *self.LIKELY)
         if any(given) and (self.parasitic_torque or self.parasitic_torque_rate):
+            key = 'parasitic_torque_Nm' if self.parasitic_torque else 'parasitic_torque_rate'
             raise InputError(
-                f'screw: typical_drag_Nm is given with parasitic_torque_Nm '
-                f'{self.parasitic_torque:g} N m, allowed is one of the two: an identified torque '
-                'takes the place of a typical one'
+                f'screw: typical_drag_Nm is given with an identified torque, by {key}, which '
+                'takes its place: allowed is one of the two'
             )
 
     def stated(self) -> dict[str, Any]:

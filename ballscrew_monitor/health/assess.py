@@ -163,9 +163,9 @@ class Course:
         known = self.baseline if self.looks and self.looks[-1].is_known else None
         normal = None if health.condition in CHANGED else known
         usual = usual_boundary(cells, normal, surface, today)
-        latest = recent(cells, today, SHORT)
+        latest = recent(cells, today, SHORT + 1)  # a log of a week ago counts
         if len(latest) < FEWEST_CELLS:
-            latest = recent(cells, today, RECENT)
+            latest = recent(cells, today, RECENT + 1)
         advice = health.advice
         if not advice and usual is None:
             free = settings.speed_allowed

@@ -180,9 +180,9 @@ class CauseCode(enum.IntEnum):
     PRELOAD_LOST = 1
     OIL_THINNER = 2
     OIL_THICKER = 3
-    FILM_STARVED = 5
-    WIPER = 6
-    TORQUE_CONSTANT = 9
+    FILM_STARVED = 4
+    WIPER = 5
+    TORQUE_CONSTANT = 6
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -355,8 +355,9 @@ class BallscrewMonitor(LifecycleNode):
             for at, row in judge.told(judged):
                 turn.hear_joints(int(judged.places[at]))
                 self._note_leap(publisher)
-                publisher.frame.take_many(judged.rows[begin : at + 1])
-                begin = at + 1
+                end = at + 1
+                publisher.frame.take_many(judged.rows[begin:end])
+                begin = end
                 self._publish(publisher, row)
             self._note_leap(publisher)
             publisher.frame.take_many(judged.rows[begin:])

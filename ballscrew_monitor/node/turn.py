@@ -41,7 +41,8 @@ class AxisTurn(NamedTuple):
                 named.setdefault(Source(self.events['source'][place]), []).append(joints)
         for source, heard in named.items():
             others = monitor.memory.others[source]
-            since = heard[max(len(heard) - others, 0) :]
+            good = max(len(heard) - others, 0)
+            since = heard[good:]
             monitor.joints.hear_many(source, since, all_since=others <= len(heard))
 
 

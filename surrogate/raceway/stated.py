@@ -186,8 +186,13 @@ class Roughness(RoughnessSpectrum):
 
     @property
     def measured(self) -> bool:
-        """Return True if a calibration or marches of this raceway correct the law of its onset."""
-        return self.calibrated is not None or self.marched_film is not None
+        """Return True if a factor, a calibration or marches of this raceway correct the law."""
+        return self.has_own_factor or self.marched_film is not None
+
+    @property
+    def has_own_factor(self) -> bool:
+        """Return True if the sheet says by how much contact begins faster than by the law."""
+        return self.calibrated is not None or self.onset_factor != 1.0
 
     @property
     def cutting_pressure(self) -> float:

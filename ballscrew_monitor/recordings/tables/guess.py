@@ -317,7 +317,8 @@ class _Guesser:
     def _stands_unnamed(self, one: Named) -> bool:
         """Return True for a column without a name that stands before or behind one of an input."""
         names, at = self.source.names(), self.source.names().index(one.column)
-        after = [name for name in names[at + 1 :] if not NO_NAME.fullmatch(name)]
+        behind = at + 1
+        after = [name for name in names[behind:] if not NO_NAME.fullmatch(name)]
         is_index = at == 0 and after and read_name(after[0]).kind == 'time'
         return bool(NO_NAME.fullmatch(one.column)) and not is_index
 

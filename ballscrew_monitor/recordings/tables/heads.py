@@ -255,7 +255,8 @@ class _Block:
 
     def _bare_factors(self) -> int:
         """Return how many rows at the begin are factors and offsets: no time goes on with them."""
-        rows = [row for row in self.rows[self.begin :][: FOLLOWING + 2] if len(row) == self.width]
+        end = self.begin + FOLLOWING + 2
+        rows = [row for row in self.rows[slice(self.begin, end)] if len(row) == self.width]
         columns = list(zip(*rows, strict=True))
         if any(map(_goes_on, columns)):
             return 0
@@ -293,7 +294,8 @@ def _goes_on(cells: Sequence[str]) -> bool:
 
 def _follows(cells: Sequence[str], count: int) -> bool:
     """Return True if times that rise evenly from a place on do so a gap after the cell before."""
-    times = [*map(_number, cells[count - 1 :])]
+    before = count - 1
+    times = [*map(_number, cells[before:])]
     return 0.0 < times[1] - times[0] < LONGEST_GAP * (times[-1] - times[1]) / (len(times) - 2)
 
 

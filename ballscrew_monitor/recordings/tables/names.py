@@ -359,7 +359,8 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
     bare = [column for column, base in bases.items() if not base]
     if len(bare) < 2 or columns.index(bare[0]) < columns.index(first):
         return bare
-    return [column for column in columns[columns.index(one.column) + 1 :][:1] if column in bare]
+    behind = columns.index(one.column) + 1
+    return [column for column in columns[behind:][:1] if column in bare]
 
 
 def unknown_units(named: Sequence[Named]) -> list[str]:

@@ -392,7 +392,8 @@ class Times:
             each = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
             at = np.append(np.arange(len(every)), np.repeat(np.arange(len(every)), counts))
             late = np.append(np.zeros(len(every)), each * usual)
-            order = np.argsort(every[at] + late, kind='stable')[len(last[0]) :]
+            known = len(last[0])
+            order = np.argsort(every[at] + late, kind='stable')[known:]
             values = {
                 name: np.append(last[1].get(name, np.zeros(0)), column)[at][order]
                 for name, column in columns.items()

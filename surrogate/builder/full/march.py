@@ -19,6 +19,7 @@ import numpy as np
 from surrogate.asperities.law import ONSET_RCS
 from surrogate.asperities.running_in import RunningContact, TILES
 from surrogate.asperities.strips import raceway_strips, TRANSITS, WAVES
+from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.raceway.stated import FILM_FACTORS
 from surrogate.screw.contacts import oil_at
@@ -47,9 +48,15 @@ def march_tasks(
     """
     Return the tasks of the strips of a raceway, which `march_task` solves, the longest first.
 
-    None where raceway and ball are smooth. Raises InputError as `running_tiles` does.
+    None where raceway and ball are smooth. Raises InputError as `running_tiles` does, and for a
+    sheet that says itself where contact begins.
 
     """
+    if screw.roughness.has_own_factor:
+        raise InputError(
+            f'roughness: onset_factor is {screw.roughness.onset_factor:g} and says where contact '
+            'begins, a raceway is marched without onset_factor, onset_band and calibrated alone'
+        )
     if not screw.composite_rms:
         return {}
     oil = oil_at(lubricant, lubricant.reference_temperature)
@@ -87,14 +94,12 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
         draws=[inputs['draw']],
         waves=inputs['waves'],
     )
-    factor = screw.roughness.onset_factor
-    told = factor * strip.told
-    marched, ramp = strip.march(told, transits=inputs['transits'], enough=ENOUGH)
+    marched, ramp = strip.march(strip.told, transits=inputs['transits'], enough=ENOUGH)
     known = not math.isnan(marched)
     return {
         'marched_m_s': marched if known else None,
-        'film_factor': strip.film_factor(marched / factor) if known else None,
-        'told_m_s': told,
+        'film_factor': strip.film_factor(marched) if known else None,
+        'told_m_s': strip.told,
         'side': inputs['side'],
         'shortest_wave_m': strip.shortest,
         'steps': ramp.steps,

@@ -121,7 +121,7 @@ def test_a_torque_that_is_nan_for_a_while_leaves_the_friction_as_it_is(motion, s
     def frictions(*lost):
         rows = motion.then(motion.steady(15.0), motion.steady(15.0, -50.0, torque=-0.5))
         for begin in lost:
-            rows['motor_torque'][begin : begin + 200] = math.nan
+            rows['motor_torque'][slice(begin, begin + 200)] = math.nan
         stretches, _ = in_blocks(Collector(surface), rows, [])
         cells = {}
         for stretch in stretches:

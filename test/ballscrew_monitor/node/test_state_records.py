@@ -82,6 +82,7 @@ def test_every_record_of_the_state_comes_back_from_its_row(data):
         'event': st.integers(0, 2**32 - 1),
         'memory': st.builds('{{"running_time": {}}}'.format, numbers),
         'ending': st.sampled_from([end.name for end in EventEnd]),
+        'usual': st.lists(numbers).map(json.dumps),
         'solves': st.just(Corrections.of('x', 'abc', [SOLVE]).solves),
     }
     for table in TABLES.values():

@@ -209,6 +209,17 @@ def test_sheets_beside_the_catalogue_are_found(tmp_path, catalogue):
     ]
 
 
+def test_marches_are_those_of_the_raceway_of_the_sheet_alone(tmp_path, catalogue):
+    sheet = (DATA / 'screws' / 'nominal.yaml').read_text().replace('name: nominal', 'name: mine')
+    head, _, rest = sheet.partition('\nroughness:\n')
+    marched = '\nroughness:\n  marched_film: 1.1\n  marched_error: 0.05\n'
+    (tmp_path / 'mine.yaml').write_text(f'{head}{marched}{rest}')
+    others = 'roughness: [{name: as_is}, {name: a, rms_um: 0.1}]\n'
+    catalogue.write_text(f'screws: [mine.yaml]\noils: [iso_vg_68]\n{others}')
+    films = [item.screw.roughness.marched_film for item in load_catalogue(catalogue)]
+    assert films == [1.1, None]
+
+
 @pytest.mark.parametrize(
     ('text', 'sentence'),
     [

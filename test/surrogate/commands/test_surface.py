@@ -134,6 +134,7 @@ def own_sheet(tmp_path):
         ('nominal', '', ['--march'], True),
         ('nominal', '  ridges: 12\n', [], True),
         ('own', '  marched_film: 1.1\n  marched_error: 0.05\n', [], False),
+        ('own', '  onset_factor: 0.56\n', [], False),
         ('own', "  calibrated: '2026-11-24'\n  onset_band: 1.2\n", [], False),
     ],
 )

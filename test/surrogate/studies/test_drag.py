@@ -7,6 +7,7 @@ import math
 import pytest
 from surrogate.parameters import load_screw
 from surrogate.studies import drag
+from surrogate.studies.validation import ValidationCase
 
 pytestmark = pytest.mark.usefixtures('small_tiles')
 
@@ -25,3 +26,4 @@ def test_efficiency_under_a_tenth_of_c():
 def test_trends_of_measured_papers():
     """The heavier the load, the better; torque turns up towards slow and fast speeds."""
     assert all(1 < ratio < 1.5 for ratio in drag.efficiency_over_load(None))
+    assert all(1.05 < branch < 10 for branch in drag.stribeck_branches(ValidationCase()))

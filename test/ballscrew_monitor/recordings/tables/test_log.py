@@ -31,7 +31,7 @@ BEGIN = 946_684_800 * SECOND  # [ns]
 LOAD = {'column': 'F', 'unit': 'N', 'magnitude': False}
 TORQUE = {'column': 'M', 'unit': 'N m', 'magnitude': False}
 WARM = {'column': 'T', 'unit': 'degC'}
-SPEED = {'column': 'v', 'unit': 'mm/s', 'magnitude': False}
+SPEED = {'column': 'v', 'unit': 'mm/s', 'magnitude': False, 'hold': False}
 CURRENT = {'torque_constant_Nm_per_A': 0.2, 'efficiency': 0.9, 'load': {'from': 'current'}}
 MAPS = [
     {'x': {'speed': SPEED, 'load': LOAD}},

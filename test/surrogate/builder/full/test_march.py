@@ -73,6 +73,10 @@ def test_a_smooth_raceway_is_not_marched(screw, oil):
     assert march_tasks(with_raceway(screw, rms=0.0), oil) == {}
 
 
+def test_a_raceway_whose_sheet_says_where_contact_begins_is_not_marched(screw, oil, refused):
+    refused('own_factor', march_tasks, with_raceway(screw, onset_factor=2.23), oil)
+
+
 def test_strips_correct_the_film_by_their_mean_with_its_standard_error():
     """Alike strips leave the usual scatter, of four degrees of which two are theirs; 1 + 1/3."""
     alike = {f'strip {1 + place}': strip(factor=0.9) for place in range(3)}
