@@ -1047,7 +1047,8 @@ class _Guesser:
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
         still = [f'{", ".join(silent)} is always 0'] if silent else []
         doubtful = [
-            f'{one.column} is in {unknown_unit(one.column)}, which is no unit of a {one.doubtful}'
+            f'{one.column} is in {unknown_unit(one.column, one.doubtful)}, which is no unit of a '
+            f'{one.doubtful}'
             for one in self.named
             if one.doubtful in ('load', *MOTOR)
             and one.axis in ('', *(each.axis for each in chosen.values()))

@@ -11,6 +11,7 @@ from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
     converted_unit,
+    factor_of,
     kind_by_unit,
     LETTERED,
     unit_of,
@@ -159,7 +160,7 @@ def read_name(column: str, text: str = '') -> Named:
     if kind in WITH_SIGN and (AMOUNTS & {*words, *in_brackets} or BARS.search(column)):
         kind = ''
     # In another unit than those of the quantity it may be another quantity.
-    if unknown_unit(column) and not unit:
+    if factor_of(column, kind) or (unknown_unit(column) and not unit):
         kind, doubtful = '', kind
     return Named(
         column=column,
@@ -365,7 +366,7 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
 def unknown_units(named: Sequence[Named]) -> list[str]:
     """Return sentences about columns that may be inputs, were their units known."""
     return [
-        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column))}, which is no '
+        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column, one.doubtful))}, which is no '
         f'unit of a {one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
         f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
         for one in named

@@ -60,6 +60,8 @@ import pytest
         ('epoch', 'machine', '', 'time', ''),
         ('Spindeldrehzahl [1/min]', 'machine', '', '', ''),
         ('Beschleunigung [m/s]', 'machine', '', '', ''),
+        ('x velocity [mm/s] (x10)', 'axis', 'x', '', 'mm/s'),
+        ('time_10ms', 'machine', '', '', 'ms'),
     ],
 )
 def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
