@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import math
 
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 import numpy as np
 
 MANY = 8  # rows that tell whether torques are amounts
@@ -35,9 +35,10 @@ def are_amounts(kind: str, data: Mapping[str, Array], *, makes_load: bool) -> bo
     """
     values = data[kind]
     if kind == 'speed':
-        motor = next((data[each] for each in MOTOR if each in data), None)
+        pushes = [data[each] for each in SIGNED if each in data and each != 'speed']
         unclear = 'position' not in data and not (values < -BARELY * np.nanmax(values)).any()
-        return None if unclear and motor is not None and turns_by_torque(motor, values) else False
+        turns = unclear and any(turns_by_torque(push, values) for push in pushes)
+        return None if turns else False
     speed = data['speed'] if 'speed' in data else slopes(data['position'])
     if not is_one_sided(values, speed):
         return False
@@ -158,7 +159,7 @@ def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
 
 def turns_by_torque(torque: Array, speed: Array) -> bool:
     """
-    Return True if a torque [-] turns with motions whose speed [-] never does.
+    Return True if a torque or force [-] turns with motions whose speed [-] never does.
 
     The mean over a motion is that of friction and load, since what accelerates also brakes.
 

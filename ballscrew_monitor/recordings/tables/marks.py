@@ -18,12 +18,16 @@ VALID = {
     None: frozenset('quality qualität qualitaet status state'.split()),
 }
 BACKWARD = {
-    True: frozenset('backward backwards reverse reversed rückwärts rueckwaerts'.split()),
+    True: frozenset(
+        'backward backwards reverse reversed negative return rückwärts rueckwaerts'.split()
+    ),
     False: frozenset('forward forwards vorwärts vorwaerts'.split()),
     None: frozenset('direction dir richtung drehrichtung sign vorzeichen'.split()),
 }
 """Words of columns by what a cell of 1 or `true` in them says, None where that is a convention."""
-WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values())
+OF_MOTIONS = frozenset('ccw cw bewegung move movement sense stroke hub phase gear'.split())
+"""Words of columns that may tell a way, by their cells, or something else of a motion."""
+WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values()) - {'negative', 'return'}
 STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
 DULL = frozenset('is code flag moving motion axis the opc data'.split())
@@ -33,7 +37,10 @@ TRUTHS = {
 }
 WAYS = {
     **dict.fromkeys('-1 - backward backwards back bwd reverse negative neg minus'.split(), True),
+    **dict.fromkeys('retract return zurück zurueck rückwärts rueckwaerts rückhub'.split(), True),
     **dict.fromkeys('0 1 + +1 forward forwards fwd positive pos plus stop still'.split(), False),
+    **dict.fromkeys('advance extend vor vorwärts vorwaerts vorhub rest hold dwell'.split(), False),
+    **dict.fromkeys('halt stopp steht idle'.split(), False),
 }
 """Cells that say whether a motion goes backward; 1 and 0 alone do not."""
 GOOD = re.compile(r'(?i:good|ok|valid|gut|gültig|gueltig)(?![^\W_])|Good(?=[A-Z])')
@@ -49,6 +56,7 @@ IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 HEX = re.compile(r'(?:0?x|16#)([\da-f]{1,8})')
 STATUS = re.compile(r'(?:0?x|16#)[\da-f]{8}', re.I)
 """A status of OPC UA as it is written."""
+FEW_WAYS = 3  # forward, backward, and at rest
 MOST = 16  # different cells of a mark: a column of more is a quantity of its own
 
 
@@ -151,10 +159,18 @@ def backward_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | 
     """Return the cells of a column of directions that say backward, None if unclear."""
     plain = {cell: plain_cell(cell) for cell in cells if cell.strip()}
     says = _truth(BACKWARD, words)
+    if OF_MOTIONS & set(words) and says is None and not _may_be_ways({*plain.values()}):
+        return []
     table = WAYS if says is None else {cell: each is says for cell, each in TRUTHS.items()}
     back = [cell for cell, text in plain.items() if table.get(text)]
     is_clear = set(plain.values()) <= set(table) and (back or says is not None)
     return back if is_clear or not plain else None
+
+
+def _may_be_ways(cells: Collection[str]) -> bool:
+    """Return True if cells are a way or two and rest, or some are words of ways."""
+    ways = {cell for cell in cells if cell in WAYS and not cell.isdigit()}
+    return 1 < len(cells) <= FEW_WAYS or (bool(ways) and len(cells) <= MOST)
 
 
 def _truth(table: Mapping[bool | None, frozenset[str]], words: Collection[str]) -> bool | None:

@@ -85,6 +85,8 @@ JOINED_WORDS = {
     'load': 'load percent',
 }
 AMOUNTS = frozenset('magnitude betrag diameter dia durchmesser'.split())
+WITHOUT_SIGN = frozenset('abs absolute unsigned norm modulus amplitude amount total'.split())
+"""Words of an amount of a speed or force; a position is absolute where its zero is fixed."""
 BARS = re.compile(r'\|[^|]+\|')
 WITH_SIGN = ('speed', 'position', 'load')
 """Words and bars of a column without the sign or of twice the way, and what is nothing so."""
@@ -157,7 +159,8 @@ def read_name(column: str, text: str = '') -> Named:
             unit = unit_of(column, other)
             kind = other if unit else kind
     in_brackets = words_of(' '.join(BRACKETS.findall(column)))
-    if kind in WITH_SIGN and (AMOUNTS & {*words, *in_brackets} or BARS.search(column)):
+    of_amounts = AMOUNTS if kind == 'position' else AMOUNTS | WITHOUT_SIGN
+    if kind in WITH_SIGN and (of_amounts & {*words, *in_brackets} or BARS.search(column)):
         kind = ''
     # In another unit than those of the quantity it may be another quantity.
     if factor_of(column, kind) or (unknown_unit(column) and not unit):
@@ -347,12 +350,12 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
 
     """
     table = marks.VALID if role == 'valid' else marks.BACKWARD
-    known = frozenset[str]().union(*table.values())
+    known = frozenset[str]().union(*table.values(), marks.OF_MOTIONS if role == 'backward' else ())
     words = {column: {*words_of(base_of(column))} for column in columns}
     bases = {
         column: words[column] - known - marks.DULL
         for column in columns
-        if known & words[column] and not BRACKETS.search(column)
+        if known & words[column] and not BRACKETS.search(column) and not read_name(column).kind
     }
     own = {*words_of(one.column), one.axis, one.axis[:1], *KINDS.get(one.kind, ())}
     if named := [column for column, base in bases.items() if base and base <= own]:
@@ -366,8 +369,9 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
 def unknown_units(named: Sequence[Named]) -> list[str]:
     """Return sentences about columns that may be inputs, were their units known."""
     return [
-        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column, one.doubtful))}, which is no '
-        f'unit of a {one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
+        f'column {short(repr(one.column))} is in '
+        f'{short(unknown_unit(one.column, one.doubtful))}, which is no unit of a '
+        f'{one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
         f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
         for one in named
         if one.doubtful in INPUTS and one.place in ('axis', 'machine')

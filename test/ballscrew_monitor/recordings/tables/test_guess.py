@@ -578,6 +578,8 @@ def test_a_force_and_a_speed_of_one_sign_are_asked_for(guessed, refused, says):
     assert make_map(made.content)
     made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'm_x [Nm]': TURNING})
     assert made.unstated == (says('one_sign_of_speed'),)
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'f_x [N]': 9.0 * TURNING})
+    assert made.unstated == (says('one_sign_of_speed'),)
 
 
 def test_a_column_of_a_rotary_axis_is_none_of_the_only_linear_one(guessed):

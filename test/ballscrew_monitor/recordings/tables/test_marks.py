@@ -72,6 +72,18 @@ def test_qualities_are_those_of_their_standard_or_unclear(words, cells, valid):
         (['direction'], ['0', '1'], None),
         (['direction'], ['1', '2'], None),
         (['richtung'], ['links', 'rechts'], None),
+        (['ccw'], ['0', '1'], None),
+        (['bewegung'], ['vor', 'zurück', 'steht'], ['zurück']),
+        (['phase'], ['rest', 'advance', 'retract'], ['retract']),
+        (['stroke'], ['extend', 'return'], ['return']),
+        (['return', 'stroke'], ['0', '1'], ['1']),
+        (['x', 'moving', 'negative'], ['false', 'true'], ['true']),
+        (['move'], ['up', 'down'], None),
+        (['sense'], ['>', '<'], None),
+        (['gear'], ['F', 'R', 'N'], None),
+        (['gear'], ['3'], []),
+        (['phase'], ['load', 'clamp', 'mill', 'unload'], []),
+        (['phase'], [str(at) for at in range(9)], []),
     ],
 )
 def test_directions_are_plain_or_unclear(words, cells, back):
@@ -125,6 +137,8 @@ def test_qualities_of_one_name_stand_behind_their_columns_or_are_asked_for(tmp_p
         ('Direction', np.where(SPEED < 0.0, 'backward', 'forward'), True),
         ('moving backward', np.where(SPEED < 0.0, '1', '0'), True),
         ('dir', np.where(SPEED < 0.0, 'CCW', 'CW'), False),
+        ('Bewegung', np.where(SPEED < 0.0, 'zurück', 'vor'), True),
+        ('x moving negative', np.where(SPEED < 0.0, 'true', 'false'), True),
     ],
 )
 @pytest.mark.parametrize('amounts', [True, False])

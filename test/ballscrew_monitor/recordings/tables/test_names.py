@@ -62,6 +62,11 @@ import pytest
         ('Beschleunigung [m/s]', 'machine', '', '', ''),
         ('x velocity [mm/s] (x10)', 'axis', 'x', '', 'mm/s'),
         ('time_10ms', 'machine', '', '', 'ms'),
+        ('x abs velocity [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x speed total [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x velocity (absolute) [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x unsigned force [N]', 'axis', 'x', '', 'N'),
+        ('x absolute position [mm]', 'axis', 'x', 'position', 'mm'),
     ],
 )
 def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
