@@ -313,22 +313,29 @@ def best(found: Sequence[Named]) -> dict[str, Named]:
     return chosen
 
 
-def rivals(found: Sequence[Named], one: Named) -> list[str]:
+def rivals(found: Sequence[Named], one: Named) -> list[Named]:
     """Return columns of the quantity of a column that are as likely the measured one."""
     of_kind = [each for each in found if each.kind == one.kind]
     likelihood = _likelihood(of_kind)
-    return [
-        each.column
-        for each in of_kind
-        if each is not one
-        and likelihood(each) == likelihood(one)
-        and (one.kind != 'position' or each.unit != one.unit)
-    ]
+    return [each for each in of_kind if each is not one and likelihood(each) == likelihood(one)]
+
+
+def may_agree(one: Named, other: Named) -> bool:
+    """Return True if columns of a quantity are the same one where their numbers are alike."""
+    is_twice = base_of(one.column) == base_of(other.column)
+    return (one.kind == 'position' or is_twice) and one.unit == other.unit
 
 
 def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, int]]:
     """Return the order of columns; words that others of the quantity do not have count last."""
-    words = {one.column: set(words_without_unit(one.column, one.kind)) for one in found}
+    words = {
+        one.column: {
+            word
+            for word in words_without_unit(base_of(one.column), one.kind)
+            if not word.isdigit()
+        }
+        for one in found
+    }
     common = {
         kind: set.intersection(*(words[one.column] for one in found if one.kind == kind))
         for kind in {one.kind for one in found}
