@@ -14,8 +14,11 @@ from typing import Any
 
 VALID = {
     True: frozenset('valid validity ok good gültig gueltig gültigkeit'.split()),
-    False: frozenset('invalid bad ungültig ungueltig schlecht'.split()),
-    None: frozenset('quality qualität qualitaet status state'.split()),
+    False: frozenset('invalid bad missing stale ungültig ungueltig schlecht'.split()),
+    None: frozenset(
+        'quality qualität qualitaet qc flag error overload saturated substituted status state '
+        'q'.split()
+    ),
 }
 BACKWARD = {
     True: frozenset(
@@ -27,10 +30,10 @@ BACKWARD = {
 """Words of columns by what a cell of 1 or `true` in them says, None where that is a convention."""
 OF_MOTIONS = frozenset('ccw cw bewegung move movement sense stroke hub phase gear'.split())
 """Words of columns that may tell a way, by their cells, or something else of a motion."""
-WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values()) - {'negative', 'return'}
+WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values()) - {'negative', 'return', 'q'}
 STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
-DULL = frozenset('is code flag moving motion axis the opc data'.split())
+DULL = frozenset('is signal sensor code flag moving motion axis the opc data'.split())
 TRUTHS = {
     **dict.fromkeys('1 true yes ja on'.split(), True),
     **dict.fromkeys('0 false no nein off'.split(), False),
@@ -56,6 +59,8 @@ IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 HEX = re.compile(r'(?:0?x|16#)([\da-f]{1,8})')
 STATUS = re.compile(r'(?:0?x|16#)[\da-f]{8}', re.I)
 """A status of OPC UA as it is written."""
+FRACTION = re.compile(r'[-+]?\d*[.,]\d*[1-9]\d*(?:[eE][-+]?\d+)?')
+"""A cell of a quantity, such as a small error, which is no mark."""
 FEW_WAYS = 3  # forward, backward, and at rest
 MOST = 16  # different cells of a mark: a column of more is a quantity of its own
 
@@ -145,7 +150,7 @@ def valid_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | Non
     cells = [cell for cell in cells if cell.strip()]
     of_machine = bool(STATES & set(words))
     bits = any(LARGEST_BYTE < code <= BAD_STATUS >> 2 for code in _codes(cells).values())
-    if len(cells) > MOST or (of_machine and bits):
+    if len(cells) > MOST or (of_machine and bits) or any(map(FRACTION.fullmatch, cells)):
         return []
     bad, says = bad_qualities(cells), _truth(VALID, words)
     if not bad and says is not None:

@@ -46,13 +46,17 @@ OTHERS = frozenset(
     'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
     'feedrate rate override max maximum peak threshold feedforward difference '
     'simulated estimated clamping '
+    'lag delta increment correction compensation offset remaining go loss noise tolerance '
+    'deadband resultant ripple residual window '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 ).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
-MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
+MEASURED = frozenset(
+    'actual act feedback fb measured meas encoder enc real pv ist istwert'.split()
+)
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
     'soll sollwert programmed prog planned interpolator'.split()
@@ -242,7 +246,8 @@ def _kind(words: Sequence[str]) -> str:
     found = [kind for word in words for kind, known in KINDS.items() if word in known]
     if not found or (found[-1] == 'temperature' and ELSEWHERE & set(words)):
         return ''
-    return found[-1]
+    is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
+    return '' if is_quality else found[-1]
 
 
 def _kind_by_unit(column: str, place: str) -> str:
@@ -326,8 +331,15 @@ def may_agree(one: Named, other: Named) -> bool:
     return (one.kind == 'position' or is_twice) and one.unit == other.unit
 
 
-def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, int]]:
-    """Return the order of columns; words that others of the quantity do not have count last."""
+def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, bool, int, int, int]]:
+    """
+    Return the order of columns, the most likely one first.
+
+    What is commanded comes last; else words that others of the quantity do not have, and that say
+    of what it is, count more than one that says that it is measured.
+
+    """
+    plain = MEASURED | WANTED | PROCESSED | QUALIFIERS | OF_THE_SCREW | ENCODERS
     words = {
         one.column: {
             word
@@ -340,7 +352,12 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, in
         kind: set.intersection(*(words[one.column] for one in found if one.kind == kind))
         for kind in {one.kind for one in found}
     }
-    return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+    def order(one: Named) -> tuple[bool, bool, int, int, int]:
+        surplus = words[one.column] - common[one.kind]
+        return one.place != 'axis', one.rank < 0, len(surplus - plain), -one.rank, len(surplus)
+
+    return order
 
 
 def base_of(column: str) -> str:

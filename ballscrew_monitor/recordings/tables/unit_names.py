@@ -127,10 +127,10 @@ def unknown_unit(column: str, kind: str = '') -> str:
     It is in the last brackets, or a factor beside the unit of a kind of quantity.
 
     """
-    if factor := factor_of(column, kind):
-        return factor
     texts = BRACKETS.findall(LETTERED.sub(' ', column))
-    return texts[-1].strip() if texts else ''
+    last = texts[-1].strip() if texts else ''
+    factor = factor_of(column, kind)
+    return last if factor in last else factor
 
 
 def unit_of(column: str, kind: str) -> str:

@@ -7,6 +7,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
     is_unit,
     kind_by_unit,
     unit_of,
+    unknown_unit,
     words_of,
 )
 import pytest
@@ -111,3 +112,10 @@ def test_a_german_word_of_several_comes_in_parts(name, words):
 )
 def test_a_factor_beside_a_unit_is_seen_and_the_number_of_an_axis_is_none(column, kind, factor):
     assert factor_of(column, kind) == factor
+
+
+def test_what_is_no_unit_is_told_whole():
+    assert unknown_unit('x torque [1/1000]', 'torque') == '1/1000'
+    assert unknown_unit('x velocity [mm/s] x10', 'speed') == 'x10'
+    assert unknown_unit('x_force_10N', 'load') == '10N'
+    assert not unknown_unit('x force', 'load')
