@@ -52,7 +52,7 @@ def is_one_sided(values: Array, speed: Array) -> bool:
     Return True if values [-] have one sign while an axis moves by its speed [-], but for noise.
 
     Values at other times than the speed count in motion and at rest. Each direction counts by
-    itself, however many rows it has; a jump, as of a position that is set anew, is no motion.
+    itself, however many rows it has; a jump, as of a position that is set again, is no motion.
 
     """
     known = np.isfinite(values) & (values != 0.0)
