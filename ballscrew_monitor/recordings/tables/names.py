@@ -339,7 +339,7 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, bool, i
     of what it is, count more than one that says that it is measured.
 
     """
-    plain = MEASURED | WANTED | PROCESSED | QUALIFIERS | OF_THE_SCREW | ENCODERS
+    plain = MEASURED | WANTED | PROCESSED | QUALIFIERS | OF_THE_SCREW
     words = {
         one.column: {
             word
