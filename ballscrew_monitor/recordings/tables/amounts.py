@@ -6,12 +6,13 @@ from collections.abc import Mapping
 import math
 
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 import numpy as np
 
 MANY = 8  # rows that tell whether torques are amounts
 CLEARLY = 2.0  # times the sum of squares of the better of two readings
 BARELY = 0.05  # of an amount is noise about zero
+USUAL = 0.99  # quantile of ways from row to row, or speeds, that are no jumps
 BACK = 0.01  # of the way of an axis that reverses, at least, leads in either direction
 FINEST = 1e-6  # of the usual way from row to row: less is rounding
 JUMP = 10.0  # times the usual way from row to row
@@ -34,9 +35,10 @@ def are_amounts(kind: str, data: Mapping[str, Array], *, makes_load: bool) -> bo
     """
     values = data[kind]
     if kind == 'speed':
-        motor = next((data[each] for each in MOTOR if each in data), None)
+        pushes = [data[each] for each in SIGNED if each in data and each != 'speed']
         unclear = 'position' not in data and not (values < -BARELY * np.nanmax(values)).any()
-        return None if unclear and motor is not None and turns_by_torque(motor, values) else False
+        turns = unclear and any(turns_by_torque(push, values) for push in pushes)
+        return None if turns else False
     speed = data['speed'] if 'speed' in data else slopes(data['position'])
     if not is_one_sided(values, speed):
         return False
@@ -49,15 +51,32 @@ def is_one_sided(values: Array, speed: Array) -> bool:
     """
     Return True if values [-] have one sign while an axis moves by its speed [-], but for noise.
 
-    Values at other times than the speed count in motion and at rest.
+    Values at other times than the speed count in motion and at rest. Each direction counts by
+    itself, however many rows it has; a jump, as of a position that is set again, is no motion.
 
     """
     known = np.isfinite(values) & (values != 0.0)
-    amounts = np.abs(np.nan_to_num(speed))
-    moving = known & (amounts > BARELY * amounts.max(initial=0.0))
-    values = values[moving if moving.any() else known]
-    ahead, back = float(values[values > 0.0].sum()), -float(values[values < 0.0].sum())
-    return max(ahead, back) > 0.0 and min(ahead, back) <= BARELY * (ahead + back)
+    speed = np.nan_to_num(speed)
+    amounts = np.abs(speed)
+    moving = known & (amounts > BARELY * _usual(amounts))
+    moving = moving if moving.any() else known
+    side = np.sign(values[moving].sum()) or 1.0
+    shares = [
+        _share_against(side, values[moving & way]) for way in (known, speed > 0.0, speed < 0.0)
+    ]
+    return bool(moving.any()) and max(shares) <= BARELY
+
+
+def _usual(amounts: Array) -> float:
+    """Return the largest amount but for the few of jumps, 0 if all are."""
+    amounts = amounts[amounts > 0.0]
+    return float(np.quantile(amounts, USUAL)) if len(amounts) else 0.0
+
+
+def _share_against(side: float, values: Array) -> float:
+    """Return the share that those of the other sign than a side have in amounts of values [-]."""
+    total = float(np.abs(values).sum())
+    return float(np.maximum(-side * values, 0.0).sum()) / total if total else 0.0
 
 
 def reverses(ways: Array) -> bool:
@@ -73,7 +92,7 @@ def reverses(ways: Array) -> bool:
         return False
     same = np.sign(ways[1:]) == np.sign(ways[:-1])
     lasting = np.append(same, False) | np.append(False, same)
-    usual = float(np.quantile(np.abs(ways), 0.99))
+    usual = _usual(np.abs(ways))
     steps = np.clip(ways[lasting], -usual, usual)
     ahead, back = float(steps[steps > 0.0].sum()), -float(steps[steps < 0.0].sum())
     return min(ahead, back) > BACK * (ahead + back)
@@ -140,7 +159,7 @@ def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
 
 def turns_by_torque(torque: Array, speed: Array) -> bool:
     """
-    Return True if a torque [-] turns with motions whose speed [-] never does.
+    Return True if a torque or force [-] turns with motions whose speed [-] never does.
 
     The mean over a motion is that of friction and load, since what accelerates also brakes.
 

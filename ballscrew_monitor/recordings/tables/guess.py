@@ -68,6 +68,7 @@ NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
 APART = 0.05  # of the rows that hold neither of two signals of joined tables
+SAME_WAY = 0.05  # of its way by which a position may differ from another of the same axis
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
@@ -186,7 +187,14 @@ class _Guesser:
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         self.marks = self._marks(columns)
         source = self.source = source.marked(self._known_marks())
-        used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
+        others = [
+            other
+            for name, chosen in self.axes.items()
+            for one in chosen.values()
+            for other in names.rivals(self.by_axis[name], one)
+            if names.may_agree(one, other)
+        ]
+        used = list(dict.fromkeys(one.column for one in [*columns, *others, *self.times]))
         table = look_through(source, used, optional=used, shown=shown)
         self.unstated = list(table.doubts.values())[:1]
         self.doubts = [key for key in table.doubts if key in ORDER_OR_SIGN][:1]
@@ -740,9 +748,10 @@ class _Guesser:
             if kind not in self.used[name] or kind == 'temperature':
                 continue
             others = [
-                column
-                for column in names.rivals(self.by_axis[name], one)
-                if not estimates.is_silent(self.extremes.get(column, np.ones(1)))
+                other.column
+                for other in names.rivals(self.by_axis[name], one)
+                if not estimates.is_silent(self.extremes.get(other.column, np.ones(1)))
+                and not (names.may_agree(one, other) and self._agree(one, other))
             ]
             if others:
                 self.used[name][kind]['column'] = None
@@ -750,6 +759,18 @@ class _Guesser:
                     f'state axes.{name}.{kind}.column in the map: '
                     f'{" or ".join([one.column, *others])}'
                 )
+
+    def _agree(self, one: Named, other: Named) -> bool:
+        """Return True if two columns of one unit hold the same but for an offset, or no number."""
+        if other.column not in self.data:
+            return True
+        columns = self.sampled[one.column], self.sampled[other.column] * other.scale
+        if not (np.isfinite(columns[0]) & np.isfinite(columns[1])).any():
+            columns = self.extremes[one.column], self.extremes[other.column] * other.scale
+        ways = [
+            float(np.nanmax(each) - np.nanmin(each)) for each in (*columns, np.subtract(*columns))
+        ]
+        return ways[2] <= SAME_WAY * max(ways)
 
     def _say_time(self, name: str, kind: str, time: str) -> None:
         """Say of an input that it has another time than the first, and ask if it may have."""
@@ -1048,7 +1069,8 @@ class _Guesser:
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
         still = [f'{", ".join(silent)} is always 0'] if silent else []
         doubtful = [
-            f'{one.column} is in {unknown_unit(one.column)}, which is no unit of a {one.doubtful}'
+            f'{one.column} is in {unknown_unit(one.column, one.doubtful)}, which is no unit of a '
+            f'{one.doubtful}'
             for one in self.named
             if one.doubtful in ('load', *MOTOR)
             and one.axis in ('', *(each.axis for each in chosen.values()))

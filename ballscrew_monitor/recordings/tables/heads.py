@@ -30,7 +30,13 @@ from ballscrew_monitor.recordings.tables.layouts import (
 )
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
-from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit
+from ballscrew_monitor.recordings.tables.unit_names import (
+    BRACKETS,
+    converted_unit,
+    is_unit,
+    unit_of,
+)
+from ballscrew_monitor.recordings.words import short
 
 BLANKS = ' '
 SEPARATORS = (';', '\t', '|', ',', BLANKS)
@@ -335,6 +341,23 @@ def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Bl
     return Head(names=unlike(names), separator=separator, begin=end, first=first, named=bool(rows))
 
 
+def _check_unit(name: str, below: str) -> None:
+    """Raise ValueError where a name states another unit than the cell of units below it."""
+    kind = read_name(name).kind
+    told = _unit_and_scale(name, kind)
+    of_row = _unit_and_scale(f'[{below.strip("[]() ")}]', kind)
+    if told[0] and of_row[0] and told != of_row:
+        raise ValueError(
+            f'the name of column {short(repr(name))} states another unit than the row of units, '
+            f'which says {short(below)}: take the wrong one out'
+        )
+
+
+def _unit_and_scale(column: str, kind: str) -> tuple[str, float]:
+    unit = unit_of(column, kind)
+    return (unit, 1.0) if unit else converted_unit(column, kind)
+
+
 def _joined(name: str, below: str) -> str:
     bare = is_unit(below) and below[0] not in '[('
     return f'{name} [{below}]' if bare else f'{name} {below}'.strip()
@@ -380,6 +403,8 @@ class _Above:
         self.width = max([self.width, *filled])  # columns without a number have names, too
         names = [*names[: self.width], *[''] * (self.width - len(names))]
         units = self._units(names)
+        for name, unit in zip(names, units, strict=False):
+            _check_unit(name, unit)
         told = unlike(
             f'{name} [{unit}]' if is_unit(unit) and not BRACKETS.search(name) else name or unnamed
             for name, unit, unnamed in zip(

@@ -14,26 +14,36 @@ from typing import Any
 
 VALID = {
     True: frozenset('valid validity ok good gültig gueltig gültigkeit'.split()),
-    False: frozenset('invalid bad ungültig ungueltig schlecht'.split()),
-    None: frozenset('quality qualität qualitaet status state'.split()),
+    False: frozenset('invalid bad missing stale ungültig ungueltig schlecht'.split()),
+    None: frozenset(
+        'quality qualität qualitaet qc flag error overload saturated substituted status state '
+        'q'.split()
+    ),
 }
 BACKWARD = {
-    True: frozenset('backward backwards reverse reversed rückwärts rueckwaerts'.split()),
+    True: frozenset(
+        'backward backwards reverse reversed negative return rückwärts rueckwaerts'.split()
+    ),
     False: frozenset('forward forwards vorwärts vorwaerts'.split()),
     None: frozenset('direction dir richtung drehrichtung sign vorzeichen'.split()),
 }
 """Words of columns by what a cell of 1 or `true` in them says, None where that is a convention."""
-WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values())
+OF_MOTIONS = frozenset('ccw cw bewegung move movement sense stroke hub phase gear'.split())
+"""Words of columns that may tell a way, by their cells, or something else of a motion."""
+WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values()) - {'negative', 'return', 'q'}
 STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
-DULL = frozenset('is code flag moving motion axis the opc data'.split())
+DULL = frozenset('is signal sensor code flag moving motion axis the opc data'.split())
 TRUTHS = {
     **dict.fromkeys('1 true yes ja on'.split(), True),
     **dict.fromkeys('0 false no nein off'.split(), False),
 }
 WAYS = {
     **dict.fromkeys('-1 - backward backwards back bwd reverse negative neg minus'.split(), True),
+    **dict.fromkeys('retract return zurück zurueck rückwärts rueckwaerts rückhub'.split(), True),
     **dict.fromkeys('0 1 + +1 forward forwards fwd positive pos plus stop still'.split(), False),
+    **dict.fromkeys('advance extend vor vorwärts vorwaerts vorhub rest hold dwell'.split(), False),
+    **dict.fromkeys('halt stopp steht idle'.split(), False),
 }
 """Cells that say whether a motion goes backward; 1 and 0 alone do not."""
 GOOD = re.compile(r'(?i:good|ok|valid|gut|gültig|gueltig)(?![^\W_])|Good(?=[A-Z])')
@@ -49,6 +59,9 @@ IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 HEX = re.compile(r'(?:0?x|16#)([\da-f]{1,8})')
 STATUS = re.compile(r'(?:0?x|16#)[\da-f]{8}', re.I)
 """A status of OPC UA as it is written."""
+FRACTION = re.compile(r'[-+]?\d*[.,]\d*[1-9]\d*(?:[eE][-+]?\d+)?')
+"""A cell of a quantity, such as a small error, which is no mark."""
+FEW_WAYS = 3  # forward, backward, and at rest
 MOST = 16  # different cells of a mark: a column of more is a quantity of its own
 
 
@@ -137,7 +150,7 @@ def valid_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | Non
     cells = [cell for cell in cells if cell.strip()]
     of_machine = bool(STATES & set(words))
     bits = any(LARGEST_BYTE < code <= BAD_STATUS >> 2 for code in _codes(cells).values())
-    if len(cells) > MOST or (of_machine and bits):
+    if len(cells) > MOST or (of_machine and bits) or any(map(FRACTION.fullmatch, cells)):
         return []
     bad, says = bad_qualities(cells), _truth(VALID, words)
     if not bad and says is not None:
@@ -151,10 +164,18 @@ def backward_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | 
     """Return the cells of a column of directions that say backward, None if unclear."""
     plain = {cell: plain_cell(cell) for cell in cells if cell.strip()}
     says = _truth(BACKWARD, words)
+    if OF_MOTIONS & set(words) and says is None and not _may_be_ways({*plain.values()}):
+        return []
     table = WAYS if says is None else {cell: each is says for cell, each in TRUTHS.items()}
     back = [cell for cell, text in plain.items() if table.get(text)]
     is_clear = set(plain.values()) <= set(table) and (back or says is not None)
     return back if is_clear or not plain else None
+
+
+def _may_be_ways(cells: Collection[str]) -> bool:
+    """Return True if cells are a way or two and rest, or some are words of ways."""
+    ways = {cell for cell in cells if cell in WAYS and not cell.isdigit()}
+    return 1 < len(cells) <= FEW_WAYS or (bool(ways) and len(cells) <= MOST)
 
 
 def _truth(table: Mapping[bool | None, frozenset[str]], words: Collection[str]) -> bool | None:

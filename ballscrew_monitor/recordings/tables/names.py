@@ -11,6 +11,7 @@ from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
     converted_unit,
+    factor_of,
     kind_by_unit,
     LETTERED,
     unit_of,
@@ -45,13 +46,17 @@ OTHERS = frozenset(
     'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
     'feedrate rate override max maximum peak threshold feedforward difference '
     'simulated estimated clamping '
+    'lag delta increment correction compensation offset remaining go loss noise tolerance '
+    'deadband resultant ripple residual window '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 ).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
-MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
+MEASURED = frozenset(
+    'actual act feedback fb measured meas encoder enc real pv ist istwert'.split()
+)
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
     'soll sollwert programmed prog planned interpolator'.split()
@@ -84,6 +89,8 @@ JOINED_WORDS = {
     'load': 'load percent',
 }
 AMOUNTS = frozenset('magnitude betrag diameter dia durchmesser'.split())
+WITHOUT_SIGN = frozenset('abs absolute unsigned norm modulus amplitude amount total'.split())
+"""Words of an amount of a speed or force; a position is absolute where its zero is fixed."""
 BARS = re.compile(r'\|[^|]+\|')
 WITH_SIGN = ('speed', 'position', 'load')
 """Words and bars of a column without the sign or of twice the way, and what is nothing so."""
@@ -156,10 +163,11 @@ def read_name(column: str, text: str = '') -> Named:
             unit = unit_of(column, other)
             kind = other if unit else kind
     in_brackets = words_of(' '.join(BRACKETS.findall(column)))
-    if kind in WITH_SIGN and (AMOUNTS & {*words, *in_brackets} or BARS.search(column)):
+    of_amounts = AMOUNTS if kind == 'position' else AMOUNTS | WITHOUT_SIGN
+    if kind in WITH_SIGN and (of_amounts & {*words, *in_brackets} or BARS.search(column)):
         kind = ''
     # In another unit than those of the quantity it may be another quantity.
-    if unknown_unit(column) and not unit:
+    if factor_of(column, kind) or (unknown_unit(column) and not unit):
         kind, doubtful = '', kind
     return Named(
         column=column,
@@ -238,7 +246,8 @@ def _kind(words: Sequence[str]) -> str:
     found = [kind for word in words for kind, known in KINDS.items() if word in known]
     if not found or (found[-1] == 'temperature' and ELSEWHERE & set(words)):
         return ''
-    return found[-1]
+    is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
+    return '' if is_quality else found[-1]
 
 
 def _kind_by_unit(column: str, place: str) -> str:
@@ -309,27 +318,46 @@ def best(found: Sequence[Named]) -> dict[str, Named]:
     return chosen
 
 
-def rivals(found: Sequence[Named], one: Named) -> list[str]:
+def rivals(found: Sequence[Named], one: Named) -> list[Named]:
     """Return columns of the quantity of a column that are as likely the measured one."""
     of_kind = [each for each in found if each.kind == one.kind]
     likelihood = _likelihood(of_kind)
-    return [
-        each.column
-        for each in of_kind
-        if each is not one
-        and likelihood(each) == likelihood(one)
-        and (one.kind != 'position' or each.unit != one.unit)
-    ]
+    return [each for each in of_kind if each is not one and likelihood(each) == likelihood(one)]
 
 
-def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, int]]:
-    """Return the order of columns; words that others of the quantity do not have count last."""
-    words = {one.column: set(words_without_unit(one.column, one.kind)) for one in found}
+def may_agree(one: Named, other: Named) -> bool:
+    """Return True if columns of a quantity are the same one where their numbers are alike."""
+    is_twice = base_of(one.column) == base_of(other.column)
+    return (one.kind == 'position' or is_twice) and one.unit == other.unit
+
+
+def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, bool, int, int, int]]:
+    """
+    Return the order of columns, the most likely one first.
+
+    What is commanded comes last; else words that others of the quantity do not have, and that say
+    of what it is, count more than one that says that it is measured.
+
+    """
+    plain = MEASURED | WANTED | PROCESSED | QUALIFIERS | OF_THE_SCREW
+    words = {
+        one.column: {
+            word
+            for word in words_without_unit(base_of(one.column), one.kind)
+            if not word.isdigit()
+        }
+        for one in found
+    }
     common = {
         kind: set.intersection(*(words[one.column] for one in found if one.kind == kind))
         for kind in {one.kind for one in found}
     }
-    return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+    def order(one: Named) -> tuple[bool, bool, int, int, int]:
+        surplus = words[one.column] - common[one.kind]
+        return one.place != 'axis', one.rank < 0, len(surplus - plain), -one.rank, len(surplus)
+
+    return order
 
 
 def base_of(column: str) -> str:
@@ -346,12 +374,12 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
 
     """
     table = marks.VALID if role == 'valid' else marks.BACKWARD
-    known = frozenset[str]().union(*table.values())
+    known = frozenset[str]().union(*table.values(), marks.OF_MOTIONS if role == 'backward' else ())
     words = {column: {*words_of(base_of(column))} for column in columns}
     bases = {
         column: words[column] - known - marks.DULL
         for column in columns
-        if known & words[column] and not BRACKETS.search(column)
+        if known & words[column] and not BRACKETS.search(column) and not read_name(column).kind
     }
     own = {*words_of(one.column), one.axis, one.axis[:1], *KINDS.get(one.kind, ())}
     if named := [column for column, base in bases.items() if base and base <= own]:
@@ -366,8 +394,9 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
 def unknown_units(named: Sequence[Named]) -> list[str]:
     """Return sentences about columns that may be inputs, were their units known."""
     return [
-        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column))}, which is no '
-        f'unit of a {one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
+        f'column {short(repr(one.column))} is in '
+        f'{short(unknown_unit(one.column, one.doubtful))}, which is no unit of a '
+        f'{one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
         f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
         for one in named
         if one.doubtful in INPUTS and one.place in ('axis', 'machine')

@@ -54,7 +54,8 @@ ONE_SIGN = {
         'weight',
     ),
     'load': 'never changes its sign while the axis reverses, as amounts do, and a weight',
-    'speed': 'never changes its sign, but the torque turns between motions, as beside amounts',
+    'speed': 'never changes its sign, but the torque or force turns between motions, as beside '
+    'amounts',
 }
 """What makes a sign doubtful, by quantity."""
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum

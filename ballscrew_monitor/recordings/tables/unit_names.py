@@ -82,6 +82,19 @@ _CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
 }
 """Spellings of units that a map writes as one of its own and a scale."""
 _IN_BRACKETS = frozenset({'in', 'kp'})  # which are words, too
+_POWER = r'(?:10+(?:\s*\^\s*[-+]?\d+)?|0?[.,]0*1|1[eE][-+]?\d+)(?![\d.,])'
+_FACTOR = re.compile(
+    rf'(?:(?<=[\s_\[(])x|[×*÷/])\s*{_POWER}|[×*÷]\s*\d[\d.,]*|'
+    rf'(?<![\w.,]){_POWER}\s*[x×*](?![^\W_])|\d+\s*[×*]|'
+    r'[\[(][^\])\d]*\d+[.,]\d+\s*[\])]',
+    re.I,
+)
+"""A factor that a name states beside its unit: a number by sign, or alone in brackets."""
+_MULTIPLE = re.compile(
+    rf'(?<![^\W_])(?<![.,/^-])(?:{_POWER}[\s_]*|\d+[.,]\d+[\s_]*|\d*[2-9]\d*|\d{{2,}})'
+    r'(?=[^\W\d_])'
+)
+"""A number before a unit that counts the unit, which that of an axis or a signal does not."""
 
 
 def converted_unit(column: str, kind: str) -> tuple[str, float]:
@@ -97,10 +110,27 @@ def converted_unit(column: str, kind: str) -> tuple[str, float]:
     return next((known[text] for text in texts if text in known), ('', 1.0))
 
 
-def unknown_unit(column: str) -> str:
-    """Return what the last brackets of a name state that is no unit and no axis, else nothing."""
+def factor_of(column: str, kind: str) -> str:
+    """Return what a name states beside or before the unit of a quantity that scales it, if any."""
+    known = set(_SPELLINGS.get(kind, {})) | set(_CONVERTED.get(kind, {}))
+    if factor := _FACTOR.search(column):
+        return factor[0].strip(' []()')
+    bare = BRACKETS.sub(' ', column).strip()
+    texts = (bare[match.start() :] for match in _MULTIPLE.finditer(bare))
+    return next((text for text in texts if _plain(text.lstrip('0123456789.,^+ _')) in known), '')
+
+
+def unknown_unit(column: str, kind: str = '') -> str:
+    """
+    Return what a name states that is no unit and no axis, else nothing.
+
+    It is in the last brackets, or a factor beside the unit of a kind of quantity.
+
+    """
     texts = BRACKETS.findall(LETTERED.sub(' ', column))
-    return texts[-1].strip() if texts else ''
+    last = texts[-1].strip() if texts else ''
+    factor = factor_of(column, kind)
+    return last if factor in last else factor
 
 
 def unit_of(column: str, kind: str) -> str:

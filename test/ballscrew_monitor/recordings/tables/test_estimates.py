@@ -146,6 +146,26 @@ def test_noise_a_glitch_and_rest_are_no_other_sign(torque, expected):
     assert is_one_sided(torque, RUNNING) is expected
 
 
+ROWS_OF_FAST_AHEAD = np.repeat(RUNNING, np.repeat([1, 30, 1, 1], 100))
+"""The same motion where 30 times as many rows are written ahead as back."""
+
+
+@pytest.mark.parametrize(
+    ('speed', 'sign'),
+    [
+        (np.where(np.arange(400) == 20, 9e4, RUNNING), 1.0),
+        (np.where(np.arange(400) == 370, -9e4, RUNNING), 1.0),
+        (np.where(np.arange(400) == 150, 9e4, RUNNING), -1.0),
+        (ROWS_OF_FAST_AHEAD, 1.0),
+        (ROWS_OF_FAST_AHEAD, -1.0),
+    ],
+)
+def test_a_jump_and_rows_of_another_rate_hide_no_change_of_sign(speed, sign):
+    force = sign * np.sign(speed) * 900.0
+    assert not is_one_sided(force, speed)
+    assert is_one_sided(np.abs(force), speed)
+
+
 @pytest.mark.parametrize(
     ('ways', 'expected'),
     [

@@ -560,6 +560,30 @@ def test_of_columns_that_are_as_likely_the_map_names_one(guessed, refused, says)
 
 
 @pytest.mark.parametrize(
+    ('first', 'second', 'kind'),
+    [
+        ('X motor position [mm]', 'X table position [mm]', 'position'),
+        ('X actual position 1 [mm]', 'X actual position 2 [mm]', 'position'),
+        ('X position [mm]', 'X position 2 [mm]', 'position'),
+        ('X position [mm]', 'X position [mm]', 'position'),
+        ('X ENC1_POS [mm]', 'X ENC2_POS [mm]', 'position'),
+        ('X velocity [mm/s]', 'X velocity [mm/s]', 'speed'),
+    ],
+)
+@pytest.mark.parametrize('factor', [1.0, 1.02, 1.5, -1.0])
+def test_columns_that_contradict_each_other_are_asked_for(first, second, kind, factor, tmp_path):
+    values = 1e3 * PLACE if kind == 'position' else SPEED
+    rows = zip(TIME, values, factor * values + 20.0, -9.0 * TURNING, strict=True)
+    lines = [','.join(f'{cell:.6g}' for cell in row) for row in rows]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([f't [s],{first},{second},X force [N]', *lines, '']))
+    made = guess(log)
+    agree = abs(factor - 1.0) < 0.05
+    assert made.content['axes']['x'][kind]['column'] == (first if agree else None)
+    assert bool(made.unstated) is not agree
+
+
+@pytest.mark.parametrize(
     'other',
     ['programmed velocity', 'velocity std', 'max velocity', 'filtered velocity', 'velocity min'],
 )
@@ -577,6 +601,8 @@ def test_a_force_and_a_speed_of_one_sign_are_asked_for(guessed, refused, says):
     made.content['axes']['x']['load']['magnitude'] = False
     assert make_map(made.content)
     made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'm_x [Nm]': TURNING})
+    assert made.unstated == (says('one_sign_of_speed'),)
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'f_x [N]': 9.0 * TURNING})
     assert made.unstated == (says('one_sign_of_speed'),)
 
 

@@ -45,6 +45,33 @@ def test_names_stand_above_the_numbers_in_whatever_way(text, names, first):
     assert head.named == (names[0] != 'column 1')
 
 
+@pytest.mark.parametrize(
+    ('name', 'cell', 'differs'),
+    [
+        ('x force [N]', 'kN', True),
+        ('x velocity [mm/s]', 'm/min', True),
+        ('x_velocity_mm_s', '[in/s]', True),
+        ('x position [mm]', 'um', True),
+        ('t [s]', 'ms', True),
+        ('x speed [rpm]', '1/min', False),
+        ('x force [N]', 'N', False),
+        ('x torque [Nm]', 'N m', False),
+        ('x force', 'kN', False),
+    ],
+)
+@pytest.mark.parametrize('first', ['name', 'unit'])
+def test_a_name_and_the_row_of_units_that_contradict_it_are_refused(name, cell, differs, first):
+    rows = {'name': f'Name;n;{name};Valve', 'unit': f'Unit;1;{cell};V'}
+    text = '\n'.join([rows.pop(first), *rows.values(), ';0;1;2', ';1;1;2', ''])
+    if not differs:
+        assert head_of(text).names[2].startswith(name)
+        return
+    with pytest.raises(ValueError, match='states another unit than the row of units') as caught:
+        head_of(text)
+    assert repr(name) in str(caught.value)
+    assert cell in str(caught.value)
+
+
 @given(strategies.lists(strategies.text(max_size=20), max_size=9))
 def test_whatever_the_lines_are_there_is_a_head_within_them_or_none(lines):
     try:

@@ -4,6 +4,7 @@
 
 from ballscrew_monitor.recordings.tables.names import (
     axis_names,
+    best,
     is_of_the_screw,
     read_name,
     turning_unit,
@@ -60,6 +61,13 @@ import pytest
         ('epoch', 'machine', '', 'time', ''),
         ('Spindeldrehzahl [1/min]', 'machine', '', '', ''),
         ('Beschleunigung [m/s]', 'machine', '', '', ''),
+        ('x velocity [mm/s] (x10)', 'axis', 'x', '', 'mm/s'),
+        ('time_10ms', 'machine', '', '', 'ms'),
+        ('x abs velocity [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x speed total [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x velocity (absolute) [mm/s]', 'axis', 'x', '', 'mm/s'),
+        ('x unsigned force [N]', 'axis', 'x', '', 'N'),
+        ('x absolute position [mm]', 'axis', 'x', 'position', 'mm'),
     ],
 )
 def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
@@ -77,6 +85,38 @@ def test_the_word_the_number_and_the_rank_of_an_axis():
     ranks = [read_name(name).rank for name in names]
     assert ranks == sorted(ranks, reverse=True)
     assert len(set(ranks)) == len(ranks)
+
+
+@pytest.mark.parametrize(
+    ('first', 'second', 'likely'),
+    [
+        ('x real velocity of tool [mm/s]', 'x velocity [mm/s]', 1),
+        ('x actual force head [N]', 'x force [N]', 1),
+        ('x actual velocity [mm/s]', 'x velocity [mm/s]', 0),
+        ('x velocity of drive [mm/s]', 'x commanded velocity [mm/s]', 0),
+        ('x speed PV [mm/s]', 'x speed [mm/s]', 0),
+        ('x filtered actual velocity [mm/s]', 'x velocity [mm/s]', 0),
+    ],
+)
+def test_a_word_of_another_thing_counts_more_than_one_of_what_is_measured(first, second, likely):
+    pair = (first, second)
+    for columns in (pair, pair[::-1]):
+        (chosen,) = best([read_name(column) for column in columns]).values()
+        assert chosen.column == pair[likely]
+
+
+@pytest.mark.parametrize(
+    'column',
+    [
+        'x actual position lag [mm]',
+        'x position delta [mm]',
+        'x position to go [mm]',
+        'x velocity resultant [mm/s]',
+        'x actual force ripple [N]',
+    ],
+)
+def test_what_is_only_about_a_quantity_is_none(column):
+    assert not read_name(column).kind
 
 
 def test_german_words_say_what_is_measured_of_what_and_in_which_unit():

@@ -2,7 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Units in the names of columns in the ways in which controls write them."""
 
-from ballscrew_monitor.recordings.tables.unit_names import is_unit, kind_by_unit, unit_of, words_of
+from ballscrew_monitor.recordings.tables.unit_names import (
+    factor_of,
+    is_unit,
+    kind_by_unit,
+    unit_of,
+    unknown_unit,
+    words_of,
+)
 import pytest
 
 
@@ -76,3 +83,39 @@ def test_a_cell_below_a_name_may_be_a_unit():
 )
 def test_a_german_word_of_several_comes_in_parts(name, words):
     assert words_of(name) == words
+
+
+@pytest.mark.parametrize(
+    ('column', 'kind', 'factor'),
+    [
+        ('x velocity [mm/s] (x10)', 'speed', 'x10'),
+        ('x velocity/10 [mm/s]', 'speed', '/10'),
+        ('10*x velocity [mm/s]', 'speed', '10*'),
+        ('x_velocity_10mm_s', 'speed', '10mm_s'),
+        ('x speed 10rpm', 'speed', '10rpm'),
+        ('x speed (0.1) [rpm]', 'speed', '0.1'),
+        ('x force [N] ×10^3', 'load', '×10^3'),
+        ('x force 100 N', 'load', '100 N'),
+        ('x_pos_0.1um', 'position', '0.1um'),
+        ('time_250us', 'time', '250us'),
+        ('time_1_10ms', 'time', '10ms'),
+        ('t x10 [ms]', 'time', 'x10'),
+        ('X10 pos [mm]', 'position', ''),
+        ('x1_mm', 'position', ''),
+        ('pos 2 mm', 'position', ''),
+        ('speed x1 [rpm]', 'speed', ''),
+        ('x speed 1/min', 'speed', ''),
+        ('x_vel_min-1', 'speed', ''),
+        ('x speed filtered 10 ms [mm/s]', 'speed', ''),
+        ('x velocity (2.5 ms) [mm/s]', 'speed', ''),
+    ],
+)
+def test_a_factor_beside_a_unit_is_seen_and_the_number_of_an_axis_is_none(column, kind, factor):
+    assert factor_of(column, kind) == factor
+
+
+def test_what_is_no_unit_is_told_whole():
+    assert unknown_unit('x torque [1/1000]', 'torque') == '1/1000'
+    assert unknown_unit('x velocity [mm/s] x10', 'speed') == 'x10'
+    assert unknown_unit('x_force_10N', 'load') == '10N'
+    assert not unknown_unit('x force', 'load')
