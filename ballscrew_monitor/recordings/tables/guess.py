@@ -622,6 +622,11 @@ class _Guesser:
         }
         found = estimates.period(list(motions.values()))
         why = '; '.join(self.not_times or ['no column is named as a time', *self._rising()])
+        if unclear := self.head.unclear_period:
+            why += (
+                f'; the head says {short(repr(unclear))}, which may be the time of something else '
+                'than rows'
+            )
         if math.isfinite(found):
             why += (
                 f'; at {1.0 / found:.3g} Hz the speeds of axes {", ".join(motions)} make their '

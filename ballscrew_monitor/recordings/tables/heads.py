@@ -21,7 +21,10 @@ from ballscrew_monitor.recordings.tables.layouts import (
     COLUMN,
     Format,
     format_of,
+    LONGEST_PERIOD,
+    MAY_BE_PERIOD,
     OTHER_PERIOD,
+    OTHER_ROWS,
     period_of,
     property_of,
     REMARK,
@@ -90,7 +93,8 @@ class Head:
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
     file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
     `labelled` are the columns that the head gives no name of their own; without `named` it names
-    none. `properties` are those of the file by their words, `factors` a row that scales cells.
+    none. `properties` are those of the file by their words, `factors` a row that scales cells,
+    `unclear_period` a line with a period that may be one of something else than rows.
 
     """
 
@@ -106,6 +110,7 @@ class Head:
     properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
     period: float = math.nan
     period_row: int = 0
+    unclear_period: str = ''
     factors: str = ''
 
     def surplus(self, row: int, cells: int) -> str:
@@ -392,7 +397,7 @@ class _Above:
         symbols = self._row('symbol')
         properties = self._properties()
         periods = self._periods(told)
-        period, row = self._period(properties, {*periods.values()})
+        period, row, unclear = self._period({*periods.values()})
         return Head(
             names=told,
             separator=self.separator,
@@ -406,6 +411,7 @@ class _Above:
             properties=properties,
             period=period,
             period_row=row,
+            unclear_period=unclear,
             factors=self._factors(),
         )
 
@@ -540,43 +546,65 @@ class _Above:
 
     def _properties(self) -> dict[str, Property]:
         found: dict[str, Property] = {}
-        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
-        for line, _ in self.lines:
-            key, value = ('', '') if line in wide else _key_and_value(line, self.separator)
+        for line, _ in self._narrow():
+            key, value = _key_and_value(line, self.separator)
             kind = property_of(key)
-            if kind and value and not (kind in found or kind in self.rows):
-                stated = BRACKETS.findall(key)
-                if kind in ('period', 'rate'):
-                    if OTHER_PERIOD.search(line.raw):
-                        continue
-                    usual = unit_of_period(key) if kind == 'period' else 'Hz'
-                    bare = usual if re.fullmatch(r'[\d.,e+-]+', value, re.I) else ''
-                    value = f'{value} {stated[0] if stated else bare}'
+            if kind not in ('', 'period', 'rate', *found, *self.rows) and value:
                 found[kind] = Property(text=value, row=line.row)
         return found
 
-    def _period(
-        self, properties: Mapping[str, Property], of_columns: Collection[float]
-    ) -> tuple[float, int]:
+    def _narrow(self) -> Iterator[tuple[Line, list[str]]]:
+        """Yield the lines that say something of the file."""
+        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
+        return ((line, row) for line, row in self.lines if line not in wide)
+
+    def _period(self, of_columns: Collection[float]) -> tuple[float, int, str]:
         """
         Return the period [s] that the head states, and the row that does so, 0 if for columns.
 
-        That of columns is one of the file if it is the same for all.
+        That of columns is one of the file if it is the same for all. What may be one of something
+        else than rows is returned as its line, and no period with it.
 
         """
+        stated, unclear, others = [], [], []
+        for line, row in self.lines:
+            text = ' '.join((line.raw or ' '.join(line.cells)).split())
+            period = self._stated_period(line, row)
+            if period is not None and 0.0 < period <= LONGEST_PERIOD:
+                stated.append((period, line.row, text))
+            elif len(row) > 1 and _known(row):
+                continue  # names of columns
+            elif period is not None or MAY_BE_PERIOD.search(text):
+                unclear.append(text)
+            if OTHER_ROWS.search(text):
+                others.append(text)
         if len(of_columns) == 1:
-            return next(iter(of_columns)), 0
-        if 'period' in properties:
-            stated = properties['period']
-            return period_of(stated.text), stated.row
-        if 'rate' in properties:
-            stated = properties['rate']
-            return period_of(stated.text), stated.row
-        for line, _ in self.lines:
-            match = REMARK.search(line.raw)
-            if match and not OTHER_PERIOD.search(line.raw):
-                return period_of(match['number'], match['unit']), line.row
-        return math.nan, 0
+            stated = [(next(iter(of_columns)), 0, '')]
+        if stated and not others and all(math.isclose(one, stated[0][0]) for one, *_ in stated):
+            return *stated[0][:2], ''
+        texts = dict.fromkeys([*(text for *_, text in stated), *unclear, *others])
+        return math.nan, 0, '; '.join(filter(None, texts))
+
+    def _stated_period(self, line: Line, row: Sequence[str]) -> float | None:
+        """Return the period [s] that a line states, NaN if it is unclear, None for none."""
+        text = line.raw or ' '.join(line.cells)
+        key, value = _key_and_value(line, self.separator)
+        cells = [cell for cell in row if cell]
+        if len(cells) == 3 and _kind(cells[1]) == 'n' and math.isfinite(period_of(*cells[1:])):
+            key, value = cells[0], f'{cells[1]} {cells[2]}'
+        elif (line, row) in self.wide and len(cells) > 2:
+            return None
+        kind = property_of(key)
+        if kind in ('period', 'rate') and value and kind not in self.rows:
+            stated = BRACKETS.findall(key)
+            usual = unit_of_period(key) if kind == 'period' else 'Hz'
+            bare = usual if re.fullmatch(r'[\d.,e+-]+', value, re.I) else ''
+            period = period_of(f'{value} {stated[0] if stated else bare}')
+        elif match := REMARK.search(text):
+            period = period_of(match['number'], match['unit'])
+        else:
+            return None
+        return math.nan if OTHER_PERIOD.search(text) else period
 
 
 def _key_and_value(line: Line, separator: str) -> tuple[str, str]:

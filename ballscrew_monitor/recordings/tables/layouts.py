@@ -20,13 +20,16 @@ PROPERTIES: dict[str, frozenset[str]] = {
     'unit': frozenset('unit units einheit einheiten yunitlabel dimension'.split()),
     'period': frozenset(
         'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
-        'deltax dx dt deltat cycletime cycletimems period interval timestep timeincrement '
-        'xincrement abtastzeit abtastintervall abtastperiode zykluszeit messtakt '
-        'taskcycletime'.split()
+        'sampling loggingperiod deltax dx dt deltat ts cycletimems timestep timeincrement '
+        'xincrement recordinterval recordinginterval loginterval logginginterval traceinterval '
+        'acquisitioninterval abtastzeit abtastintervall abtastperiode abtastung messtakt '
+        'messintervall aufzeichnungsintervall'.split()
     ),
     'rate': frozenset(
-        'samplerate samplingrate samplefrequency samplingfrequency rate fs frequency abtastrate '
-        'abtastfrequenz messrate samplespersecond'.split()
+        'samplerate samplingrate samplefrequency samplingfrequency fs abtastrate '
+        'abtastfrequenz messrate aufzeichnungsrate samplespersecond recordrate recordingrate '
+        'recordingfrequency lograte loggingrate loggingfrequency tracerate tracefrequency '
+        'scanrate acquisitionrate acquisitionfrequency'.split()
     ),
     'start': frozenset(
         'starttime start startdate startdatetime startoftrace startofrecord begin begintime '
@@ -43,17 +46,29 @@ COLUMN = re.compile(
 )
 """The number of a column that a line of its own names."""
 REMARK = re.compile(
-    r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt)\D*?(?P<number>\d[\d.,]*)\s*'
-    r'(?P<unit>ns(?:ec)?|us(?:ec)?|[µμ]s|ms(?:ec)?|s(?:ec(?:onds?)?)?|k?Hz)\b',
+    r'(?:^\W*|[,;]\s*)sampl(?:e|ing) (?:time|period|interval|rate|frequency)(?: is| of|:| =)? '
+    r'*(?P<number>\d[\d.,]*)\s*(?P<unit>[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)(?=\W*$|[,;])',
     re.I,
 )
-"""A period or rate that a remark states in a sentence."""
-OTHER_PERIOD = re.compile(
-    r'trigger|control|regel|interpol|decimat|dezim|every|jede|\b(?:of|von|der|des)\b|'
-    r'\d\s*[x*/]\s*\d',
+"""A period or rate that a remark plainly states of the rows."""
+MAY_BE_PERIOD = re.compile(
+    r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt|frequen|rate\b)\D*?\d[\d.,]*\s*'
+    r'(?:[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)\b',
     re.I,
+)
+"""A period or rate that may be one of rows or of something else."""
+OTHER_PERIOD = re.compile(
+    r'trigger|control|regel|interpol|every|jede|\b(?:of|von|der|des)\b|\d\s*[x*/]\s*\d', re.I
 )
 """What makes a stated period one of something else than rows."""
+OTHER_ROWS = re.compile(
+    r'decimat|dezim|(?:down|over|under|sub|re)[- ]?sampl|averag|mittel(?:ung|wert)|gemittelt|'
+    r'untersetz|unterabtast|überabtast|(?:record|logg?|sav|stor|writ|keep)\w* (?:every|each)|'
+    r'\beach \d|\bjede[nrs]?\b|\bevery \d',
+    re.I,
+)
+"""What in a line of its own makes rows other than the samples of which a period is stated."""
+LONGEST_PERIOD = 1.0  # [s], above which a stated period is rather that of a cycle or of the log
 IN_SECONDS = frozenset('deltax dx dt deltat xincrement'.split())
 """Labels of a period that need no unit."""
 THOUSANDS = re.compile(r'[1-9]\d{0,2}[.,]\d{3}')
