@@ -249,3 +249,46 @@ def test_records_beside_those_that_are_read_are_named(tmp_path, says):
     path = tmp_path / 'log.json'
     path.write_text(json.dumps({'run': records, 'other': records}))
     assert foreign.read_signals(path, 'json').left_out == {'other': says('records')}
+
+
+NUMBERS_OF_ONE_PERIOD = [
+    ({'fs': 500.0}, 500.0),
+    ({'dt': STEP}, 500.0),
+    ({'Ts': STEP, 'gain_of_loop': 3.0}, 500.0),
+    ({'inverter': {'frequency': 8000.0}}, None),
+    ({'motion': {'period': 0.5}}, None),
+    ({'fs': 500.0, 'filter': {'fs': 1000.0}}, None),
+    ({'dt': STEP, 'filter': {'period': 0.5}}, None),
+    ({'controller': {'Ts': 0.001}}, None),
+    ({'frequency': 50.0}, None),
+    ({'dt': 2.0}, None),
+    ({'fs': 0.5}, None),
+]
+
+
+def fields_of(content, before=''):
+    """Return the numbers of nested structures with their paths in HDF5."""
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from fields_of(value, f'{before}{key}/')
+        else:
+            yield f'{before}{key}', value
+
+
+@pytest.mark.parametrize('kind', ['mat', 'h5'])
+@pytest.mark.parametrize(('numbers', 'rate'), NUMBERS_OF_ONE_PERIOD)
+def test_a_number_is_the_rate_if_it_is_the_only_one_beside_the_arrays(
+    numbers, rate, kind, tmp_path
+):
+    path = tmp_path / f'log.{kind}'
+    content = {'x_vel_mm_s': SPEED, 'x_force_N': 10.0 * SPEED} | numbers
+    if kind == 'mat':
+        scipy.io.savemat(path, content)
+    else:
+        with h5py.File(path, 'w') as file:
+            for name, value in fields_of(content):
+                file[name] = value
+    result = guess(path)
+    assert result.content['time']['rate_Hz'] == rate
+    names = [name.replace('/', '.') for name, value in fields_of(numbers) if name[:4] != 'gain']
+    assert rate or all(name in ' '.join(result.unstated) for name in names)
