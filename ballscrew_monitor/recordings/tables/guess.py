@@ -692,19 +692,18 @@ class _Guesser:
             used[kind] |= {'time': group} if group != time else {}
             self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
-            self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
+            stated = self._statement(key) or 'the log does not say it'
+            self._assume(f'{name}.{key}', value, f'{stated}; the shipped one')
         self._set_lead(name)
         self._set_load(name)
+        self._ask_for_gear(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
-            self._assume(
-                f'{name}.temperature_degC',
-                TEMPERATURE,
-                'no column is the oil temperature of this axis',
-            )
+            why = 'no column is the oil temperature of this axis'
+            self._set_by_head(name, 'temperature_degC', TEMPERATURE, why)
         if 'speed' in used and not self._is_decimal_open():
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
@@ -987,6 +986,17 @@ class _Guesser:
         """Assume the lead of the usual screw; where the log has another the map states it."""
         usual, lead = _usual_lead(), self._lead(name)
         why = f'the log does not say it; that of {SCREW}'
+        stated = self.head.machine.get('lead_mm')
+        if stated and not abs(lead * MILLI / stated.value - 1.0) > SAME_LEAD:
+            self._set_by_head(name, 'lead_mm', math.nan, '')
+            return
+        if stated:
+            self.used[name]['lead_mm'] = None
+            self.unstated.append(
+                f'state axes.{name}.lead_mm in the map: {self._statement("lead_mm")}, while '
+                f'position and speed agree at {lead * MILLI:.3g} mm'
+            )
+            return
         if abs(lead / usual - 1.0) <= SAME_LEAD:
             why = f'that of {SCREW}, at which position and speed agree'
         elif math.isfinite(lead):
@@ -998,6 +1008,39 @@ class _Guesser:
             )
             return
         self._assume(f'{name}.lead_mm', float(f'{usual * MILLI:.6g}'), why)
+
+    def _statement(self, key: str) -> str:
+        """Return the line of the head that says something of the machine, empty for none."""
+        stated = self.head.machine.get(key)
+        return f'the head says {short(repr(stated.text))}' if stated else ''
+
+    def _set_by_head(self, name: str, key: str, usual: float, why: str) -> None:
+        """Take a number from the head if it is clear, ask if it is not, else assume the usual."""
+        stated = self.head.machine.get(key)
+        if stated is None:
+            self._assume(f'{name}.{key}', usual, why)
+        elif math.isfinite(stated.value) and len(self.axes) == 1:
+            self._assume(f'{name}.{key}', stated.value, self._statement(key))
+        else:
+            self.used[name][key] = None
+            self.unstated.append(f'state axes.{name}.{key} in the map: {self._statement(key)}')
+
+    def _ask_for_gear(self, name: str) -> None:
+        """Let the map scale what may be of the motor where the head states a gear."""
+        stated, used = self.head.machine.get('gear'), self.used[name]
+        if stated is None or stated.value == 1.0:
+            return
+        for kind in (*MOTION, *MOTOR):
+            unit = self._unit(name, kind) if kind in used else ''
+            turns = unit in (*conversions.ROTARY_POSITION_UNITS, *conversions.ROTARY_SPEED_UNITS)
+            makes_load = kind in MOTOR and 'load' in used and used['load'].get('from') == kind
+            if turns or (kind in used and (makes_load or 'load' not in used)):
+                used[kind]['scale'] = None
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.scale in the map, what makes '
+                    f'{used[kind]["column"]} that of the screw, 1 if it is: '
+                    f'{self._statement("gear")}'
+                )
 
     def _lead(self, name: str) -> float:
         """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""
@@ -1065,7 +1108,7 @@ class _Guesser:
         """Assume what makes a torque of a current; ask for the rated torque of one in %."""
         if self._unit(name, kind) != RATED:
             why = 'the log does not say it; it is on the plate of the motor'
-            self._assume(f'{name}.torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+            self._set_by_head(name, 'torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
             return
         self.used[name]['torque_rated_Nm'] = None
         self.unstated.append(

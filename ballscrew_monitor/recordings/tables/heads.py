@@ -22,6 +22,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     Format,
     format_of,
     LONGEST_PERIOD,
+    MACHINE,
     MAY_BE_PERIOD,
     OTHER_PERIOD,
     OTHER_ROWS,
@@ -86,6 +87,14 @@ class Property:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Statement:
+    """A text of the machine, and its value in the unit of a map, NaN where it is unclear."""
+
+    text: str
+    value: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Head:
     """
     Names of the columns, how the cells are parted, and what stands above the first of them.
@@ -94,7 +103,8 @@ class Head:
     file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
     `labelled` are the columns that the head gives no name of their own; without `named` it names
     none. `properties` are those of the file by their words, `factors` a row that scales cells,
-    `unclear_period` a line with a period that may be one of something else than rows.
+    `unclear_period` a line with a period that may be one of something else than rows, `machine`
+    what is said of the machine, by the keys of `MACHINE`.
 
     """
 
@@ -111,6 +121,7 @@ class Head:
     period: float = math.nan
     period_row: int = 0
     unclear_period: str = ''
+    machine: Mapping[str, Statement] = dataclasses.field(default_factory=dict)
     factors: str = ''
 
     def surplus(self, row: int, cells: int) -> str:
@@ -412,6 +423,7 @@ class _Above:
             period=period,
             period_row=row,
             unclear_period=unclear,
+            machine=self._machine(),
             factors=self._factors(),
         )
 
@@ -551,6 +563,22 @@ class _Above:
             kind = property_of(key)
             if kind not in ('', 'period', 'rate', *found, *self.rows) and value:
                 found[kind] = Property(text=value, row=line.row)
+        return found
+
+    def _machine(self) -> dict[str, Statement]:
+        """Return what the lines say of the machine; several that differ are unclear."""
+        found: dict[str, Statement] = {}
+        for line, row in self._narrow():
+            text = ' '.join((line.raw or ' '.join(line.cells)).split())
+            if (len(row) > 1 and _known(row)) or _is_of_numbers(row):
+                continue
+            key, value = _key_and_value(line, self.separator)
+            for name, of in MACHINE.items():
+                stated = of.value_of(key, value)
+                if math.isfinite(stated) or of.hint.search(text):
+                    if (before := found.get(name)) and before.value != stated:
+                        text, stated = f'{before.text}; {text}', math.nan
+                    found[name] = Statement(text=text, value=stated)
         return found
 
     def _narrow(self) -> Iterator[tuple[Line, list[str]]]:

@@ -7,6 +7,7 @@ A property is what a head says of the file or of a column: its name, unit, perio
 
 """
 
+from collections.abc import Mapping
 import dataclasses
 import math
 import re
@@ -20,7 +21,7 @@ PROPERTIES: dict[str, frozenset[str]] = {
     'unit': frozenset('unit units einheit einheiten yunitlabel dimension'.split()),
     'period': frozenset(
         'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
-        'sampling loggingperiod deltax dx dt deltat ts cycletimems timestep timeincrement '
+        'sampling samplingcycle deltax dx dt deltat ts cycletimems timestep timeincrement '
         'xincrement recordinterval recordinginterval loginterval logginginterval traceinterval '
         'acquisitioninterval abtastzeit abtastintervall abtastperiode abtastung messtakt '
         'messintervall aufzeichnungsintervall'.split()
@@ -46,8 +47,8 @@ COLUMN = re.compile(
 )
 """The number of a column that a line of its own names."""
 REMARK = re.compile(
-    r'(?:^\W*|[,;]\s*)sampl(?:e|ing) (?:time|period|interval|rate|frequency)(?: is| of|:| =)? '
-    r'*(?P<number>\d[\d.,]*)\s*(?P<unit>[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)(?=\W*$|[,;])',
+    r'(?:^\W*|[,;]\s*)sampl(?:e|ing) (?:time|period|cycle|interval|rate|frequency)(?: is|:| =)? *'
+    r'(?P<number>\d[\d.,]*)\s*(?P<unit>[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)(?=\W*$|[,;])',
     re.I,
 )
 """A period or rate that a remark plainly states of the rows."""
@@ -79,8 +80,85 @@ RATE = re.compile('(k?)hz')
 PERIODS = {'n': 1e-9, 'u': 1e-6, 'µ': 1e-6, 'μ': 1e-6, 'm': 1e-3, 's': 1.0}
 RATES = {'': 1.0, 'k': 1e3}
 """Units [s] of a period and [Hz] of a rate by their first letter."""
+NUMBER_AND_UNIT = re.compile(r'=?\s*(?P<number>\d+(?:[.,]\d+)?)\s*[\[(]?(?P<unit>[^\])]*)[\])]?')
 SEPARATED = re.compile(r'^\s*"?sep=(?P<sign>.)', re.I)
 """The line by which a spreadsheet tells what separates cells."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class OfMachine:
+    """
+    What a head may say of the machine: plain `words` of it, and `units` in that of the map.
+
+    A text in which `hint` is found may say it in another form.
+
+    """
+
+    words: frozenset[str]
+    units: Mapping[str, float]
+    hint: re.Pattern[str]
+
+    def value_of(self, label: str, text: str) -> float:
+        """Return the value that a text states below a plain label, NaN for any other."""
+        match = NUMBER_AND_UNIT.fullmatch(text.strip())
+        if not match:
+            return math.nan
+        words = re.findall(r'[^\W\d_]+', re.sub(r'[\[(].*?[\])]', '', label).lower())
+        unit = match['unit'] or ''.join(re.findall(r'[\[(](.*?)[\])]', label))
+        if not unit and words[-1:] and words[-1] in self.units:
+            *words, unit = words
+        factor = self.units.get(re.sub(r'[\s·*]+', '', unit).lower(), math.nan)
+        number = float(match['number'].replace(',', '.'))
+        return number * factor if ''.join(words) in self.words else math.nan
+
+
+MACHINE: dict[str, OfMachine] = {
+    'lead_mm': OfMachine(
+        words=frozenset(
+            'lead screwlead ballscrewlead leadofscrew ballscrewpitch screwpitch spindelsteigung '
+            'steigung gewindesteigung'.split()
+        ),
+        units={'mm': 1.0, 'm': 1e3, 'mm/rev': 1.0, 'mm/u': 1.0, 'mm/turn': 1.0},
+        hint=re.compile(
+            r'(?:\blead|pitch|steigung)(?![a-z]*time)[^\d,;]{0,20}\d|'
+            r'(?:screw|spindel|spindle|kgt)\b.*\d\s*[x×]\s*\d',
+            re.I,
+        ),
+    ),
+    'torque_constant_Nm_per_A': OfMachine(
+        words=frozenset(
+            'torqueconstant motortorqueconstant kt drehmomentkonstante momentenkonstante'.split()
+        ),
+        units={'nm/a': 1.0},
+        hint=re.compile(
+            r'(?:torque constant|motor constant|\bkt\b|momente?n?konstante)\D{0,20}\d', re.I
+        ),
+    ),
+    'gear': OfMachine(
+        words=frozenset('gearratio gear getriebeübersetzung übersetzung'.split()),
+        units={'': 1.0, ':': 1.0, ':1': 1.0},
+        hint=re.compile(
+            r'(?:\bgear|getriebe|übersetzung|uebersetzung|transmission ratio|belt ratio)\D*\d',
+            re.I,
+        ),
+    ),
+    'temperature_degC': OfMachine(
+        words=frozenset('oiltemperature öltemperatur oeltemperatur lubricanttemperature'.split()),
+        units={'°c': 1.0, 'degc': 1.0, 'c': 1.0},
+        hint=re.compile(r'(?:\boil|\böl|oel|lubricant|schmier)\w*[ -]?temp\D*\d', re.I),
+    ),
+    'oil': OfMachine(
+        words=frozenset(),
+        units={},
+        hint=re.compile(r'\b(?:oil|öl|oel|lubricant|grease|fett|schmierstoff)\b|\bvg ?\d', re.I),
+    ),
+    'screw': OfMachine(
+        words=frozenset(),
+        units={},
+        hint=re.compile(r'(?:ball|lead)[ -]?screw|kugelgewinde|screw type', re.I),
+    ),
+}
+"""What the head may say of the machine, by the keys of an axis in a map, and its gear."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,6 +3,7 @@
 """The first map of a log: by names, ranges and rates, and honest about what is assumed."""
 
 import datetime as dt
+import math
 
 from ballscrew_monitor.recordings.tables import guess as guess_module
 from ballscrew_monitor.recordings.tables import read as read_module
@@ -17,6 +18,8 @@ TIME = np.arange(200) / 50.0
 SPEED = 100.0 * np.sin(TIME)
 TURNING = 2.0 * np.sin(TIME * 2.0)  # of the screw in a second
 PLACE = 3.0 - np.cos(TIME * 2.0)  # the turns that these are
+
+CONSTANT = 'torque_constant_Nm_per_A'
 
 
 @pytest.fixture
@@ -806,3 +809,72 @@ def test_amounts_that_are_seen_late_are_none_the_less(tmp_path, monkeypatch):
     made.content['axes']['x']['torque'].pop('magnitude')
     series = read_series(log, make_map(made.content)) if made.unstated == () else None
     assert series is None or series.mapping.axes[0].columns['torque'].magnitude
+
+
+def log_below(head, names, path):
+    """Return a log of two rising and falling columns below a head."""
+    rows = ''.join(f'{at / 50};{at % 7 - 3};{at % 5 - 2}\n' for at in range(60))
+    path.write_text(f'{head}\n{names}\n{rows}')
+    return path
+
+
+@pytest.mark.parametrize(
+    ('line', 'names', 'key', 'value'),
+    [
+        ('Lead: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Spindelsteigung: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Steigung [mm];5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Ball screw pitch: 5.0 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('lead_mm: 5.0', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Torque constant: 0.8 Nm/A', 't [s];x velocity [mm/s];x current [A]', CONSTANT, 0.8),
+        ('Kt = 0,8 N m/A', 't [s];x velocity [mm/s];x current [A]', CONSTANT, 0.8),
+        (
+            'Oil temperature: 70 °C',
+            't [s];x velocity [mm/s];x force [N]',
+            'temperature_degC',
+            70.0,
+        ),
+    ],
+)
+def test_what_the_head_says_of_the_machine_is_taken_from_it(line, names, key, value, tmp_path):
+    content = guess(log_below(line, names, tmp_path / 'log.csv')).content
+    place = content['assumed'][f'x.{key}']
+    assert place['value'] == value
+    assert line in place['reason']
+
+
+@pytest.mark.parametrize(
+    ('line', 'names', 'key'),
+    [
+        ('# ball screw 32x5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Screw: 32 x 5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Pitch: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Lead: 5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Lead: 5 mm\nLead: 10 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Torque constant: 0.8', 't [s];x velocity [mm/s];x current [A]', CONSTANT),
+        ('Gear ratio: 3', 't [s];x motor speed [rpm];x force [N]', 'speed.scale'),
+        ('Gear ratio: 3', 't [s];x velocity [mm/s];x torque [Nm]', 'torque.scale'),
+    ],
+)
+def test_what_the_head_may_say_of_the_machine_is_named_in_a_question(line, names, key, tmp_path):
+    result = guess(log_below(line, names, tmp_path / 'log.csv'))
+    (asked,) = [why for why in result.unstated if f'axes.x.{key}' in why]
+    assert all(part in asked for part in line.split('\n'))
+
+
+def test_a_lead_in_the_head_that_position_and_speed_contradict_is_asked_for(tmp_path):
+    moved = np.cumsum(200.0 * np.sin(np.arange(400) / 9) / 50.0)
+    rows = ''.join(
+        f'{at / 50};{moved[at] / 10.0 * 360.0};{200.0 * math.sin(at / 9)}\n' for at in range(400)
+    )
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Lead: 5 mm\nt [s];x position [deg];x velocity [mm/s]\n{rows}')
+    result = guess(log)
+    assert result.content['axes']['x']['lead_mm'] is None
+    assert any('Lead: 5 mm' in why and '10' in why for why in result.unstated)
+
+
+def test_an_oil_of_the_head_is_named_beside_the_one_that_is_taken(tmp_path):
+    names = 't [s];x velocity [mm/s];x force [N]'
+    content = guess(log_below('Oil: ISO VG 220', names, tmp_path / 'log.csv')).content
+    assert 'Oil: ISO VG 220' in content['assumed']['x.oil']['reason']

@@ -381,6 +381,7 @@ def test_a_period_that_may_be_of_something_else_is_named_in_a_question(line, tmp
         'Ts = 10 ms',
         'fs = 100',
         '# mill 3, sampling rate 100 Hz, table',
+        '"Sampling cycle 10 msec"',
     ],
 )
 def test_a_period_in_plain_words_of_rows_is_read(line, tmp_path):
