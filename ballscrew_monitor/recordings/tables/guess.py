@@ -34,7 +34,14 @@ from ballscrew_monitor.recordings.tables.dates import (
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.marked import look_at_marks
-from ballscrew_monitor.recordings.tables.marks import backward_cells, Mark, Marks, valid_cells
+from ballscrew_monitor.recordings.tables.marks import (
+    backward_cells,
+    Mark,
+    Marks,
+    MOST,
+    tells_apart,
+    valid_cells,
+)
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
@@ -184,6 +191,7 @@ class _Guesser:
                 f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
+        self._refuse_several()
         self.marks = self._marks(columns)
         source = self.source = source.marked(self._known_marks())
         used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
@@ -220,6 +228,20 @@ class _Guesser:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
         self._forget_speeds()
+
+    def _refuse_several(self) -> None:
+        """Raise InputError for rows of several axes or machines that a column tells apart."""
+        used = {one.column for chosen in self.axes.values() for one in chosen.values()}
+        held = [name for name in self.source.names() if name not in used]
+        columns = [name for name in held if tells_apart(words_of(names.base_of(name)))]
+        if not columns:
+            return
+        for column, cells in look_at_marks(self.source.blocks(columns), columns)[1].items():
+            if 1 < len(cells) <= MOST:
+                raise InputError(
+                    f'log {self.path}: its rows are of several axes or machines, which column '
+                    f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
+                )
 
     def _marks(self, inputs: Sequence[Named]) -> dict[str, dict[str, dict[str, Any]]]:
         """Return what a map says of the marks of each input: their columns, and cells if clear."""

@@ -26,6 +26,12 @@ BACKWARD = {
 WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values())
 STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
+SEVERAL = frozenset(
+    'axis axes achse achsen machine maschine device gerät geraet joint gelenk drive '
+    'antrieb'.split()
+)
+NUMBERED = frozenset('name id no nr number nummer label the'.split())
+"""Words of a column that tells rows of several axes or machines apart, and those beside them."""
 DULL = frozenset('is code flag moving motion axis the opc data'.split())
 TRUTHS = {
     **dict.fromkeys('1 true yes ja on'.split(), True),
@@ -155,6 +161,11 @@ def backward_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | 
     back = [cell for cell, text in plain.items() if table.get(text)]
     is_clear = set(plain.values()) <= set(table) and (back or says is not None)
     return back if is_clear or not plain else None
+
+
+def tells_apart(words: Collection[str]) -> bool:
+    """Return True if a column tells by the words of its name of what axis or machine a row is."""
+    return bool(SEVERAL & set(words)) and set(words) <= SEVERAL | NUMBERED
 
 
 def _truth(table: Mapping[bool | None, frozenset[str]], words: Collection[str]) -> bool | None:

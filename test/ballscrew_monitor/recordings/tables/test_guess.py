@@ -878,3 +878,25 @@ def test_an_oil_of_the_head_is_named_beside_the_one_that_is_taken(tmp_path):
     names = 't [s];x velocity [mm/s];x force [N]'
     content = guess(log_below('Oil: ISO VG 220', names, tmp_path / 'log.csv')).content
     assert 'Oil: ISO VG 220' in content['assumed']['x.oil']['reason']
+
+
+@pytest.mark.parametrize('in_turn', [True, False])
+@pytest.mark.parametrize(
+    ('column', 'cells'),
+    [('axis', 'XY'), ('Achse', '12'), ('device', 'AB'), ('Machine', ('M1', 'M2'))],
+)
+def test_rows_of_several_axes_or_machines_are_refused(column, cells, in_turn, tmp_path, refused):
+    rows = [(at / 50, cell, at % 7 - 3) for at in range(60) for cell in cells]
+    rows = rows if in_turn else sorted(rows, key=lambda row: row[1])
+    text = ''.join(f'{time};{cell};{speed}\n' for time, cell, speed in rows)
+    log = tmp_path / 'log.csv'
+    log.write_text(f't [s];{column};velocity [mm/s]\n{text}')
+    with refused('several', column=repr(column), cells=', '.join(cells)):
+        guess(log)
+
+
+def test_a_column_of_one_axis_alone_refuses_nothing(tmp_path):
+    rows = ''.join(f'{at / 50};X;{at % 7 - 3}\n' for at in range(60))
+    log = tmp_path / 'log.csv'
+    log.write_text(f't [s];axis;velocity [mm/s]\n{rows}')
+    assert guess(log).content['axes']
