@@ -153,18 +153,38 @@ def _json(path: Path) -> Signals:
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
-    left_out = {}
+    left_out, factors = {}, ''
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
+        factors = ', '.join(_stated_factors(content))
         if not records:
-            return Signals(frame=_side_by_side(lists))
+            return Signals(frame=_side_by_side(lists), factors=factors)
         content = lists[records[0]]
         left_out = dict.fromkeys(records[1:], f'the records of {records[0]} come before it')
     if not _are_all(dict, content):
         raise TypeError
     frame = pl.from_dicts(content, infer_schema_length=None)
-    return Signals(frame=frame, left_out=left_out)
+    return Signals(frame=frame, left_out=left_out, factors=factors)
+
+
+def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[str]:
+    """Yield numbers besides the signals that may scale these, by the words of their paths."""
+    for key, value in content.items():
+        name = f'{before}{key}'
+        if isinstance(value, dict):
+            yield from _stated_factors(value, f'{name}.')
+            continue
+        of = next((word for part in name.split('.') if (word := _factor(part))), '')
+        if of and np.asarray(value).dtype.kind in 'iuf':
+            if (np.asarray(value) != (0.0 if of == 'offset' else 1.0)).any():
+                yield f'{name} {np.squeeze(value)}'
+
+
+def _factor(label: str) -> str:
+    """Return the word of a label for what scales or shifts the values, empty for any other."""
+    match = FACTOR.search(label.lower().replace('_', ' '))
+    return match[1] if match else 'cal' if label.lower() == 'cal' else ''
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
@@ -269,9 +289,10 @@ def _hdf(path: Path) -> Signals:
 
     def visit(name: str, item: Any) -> None:
         nonlocal room
-        if not isinstance(item, h5py.Dataset):
-            return
         called = name.replace('/', '.')
+        if not isinstance(item, h5py.Dataset):
+            factors.extend(_unclear_factors(called, item.attrs))
+            return
         if item.dtype.kind not in 'iufb' and not item.dtype.names:
             found[called] = np.broadcast_to(np.void(b' '), item.shape or ())  # which is no number
             return
@@ -287,8 +308,11 @@ def _hdf(path: Path) -> Signals:
             factors.extend(_unclear_factors(called, item.attrs))
 
     with h5py.File(path, 'r') as file:
+        factors.extend(_unclear_factors('', file.attrs))
         file.visititems(visit)
-    return dataclasses.replace(_arrays(found), factors=', '.join(factors))
+    signals = _arrays(found)
+    told = ', '.join(filter(None, [*factors, signals.factors]))
+    return dataclasses.replace(signals, factors=told)
 
 
 def _scaled(dataset: Any) -> Any:
@@ -301,13 +325,12 @@ def _scaled(dataset: Any) -> Any:
     return known * attributes.get(SCALE_FACTOR, 1.0) + attributes.get(ADD_OFFSET, 0.0)
 
 
-def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterator[str]:
-    """Yield attributes of a dataset that may scale it, which no convention defines."""
-    for key, value in attributes.items():
-        plain = 0.0 if 'offset' in key.lower() else 1.0
-        if key not in (SCALE_FACTOR, ADD_OFFSET) and FACTOR.search(key.lower().replace('_', ' ')):
-            if np.asarray(value).dtype.kind in 'iuf' and (np.asarray(value) != plain).any():
-                yield f'{name}: {key} {np.squeeze(value)}'
+def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterable[str]:
+    """Return attributes of a dataset that may scale it, which no convention defines."""
+    known = (SCALE_FACTOR, ADD_OFFSET)
+    numbers = {key: value for key, value in attributes.items() if key not in known}
+    of = f'{name}: ' if name else ''
+    return (f'{of}{told}' for told in _stated_factors(numbers))
 
 
 def _arrays(content: Mapping[str, Any]) -> Signals:
@@ -329,11 +352,13 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
                 held[f'{name} {at + 1}'] = tall[:, at].astype(np.float64)
         elif array.size > 1:
             left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
+    scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
     told = ', '.join(f'{name} = {float(content[name]):g}' for name in periods)
     period = _period_of_rows(periods, held)
     return Signals(
         frame=_side_by_side(held),
         period=period,
+        factors=', '.join(_stated_factors(scalars)),
         unclear_period=told if math.isnan(period) else '',
         left_out=left_out,
     )

@@ -59,7 +59,18 @@ BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I
 """A factor of a time, where a row of factors says no more."""
 USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
 LONGEST_GAP = 100.0  # times the usual step, after the first time of a table
-FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
+FACTOR = re.compile(
+    r'(scale|scaling|factor|gain|offset|faktor|skalierung|multiplier|resolution|slope|sensitivity|'
+    r'calibration|conversion|lsb|decimals|exponent|kalibrierung|umrechnung|auflösung|wertigkeit|'
+    r'empfindlichkeit|(?:scaling|polynomial) coefficient)s?\W*$'
+)
+"""Words of what scales or shifts the cells, at the end of a label."""
+TIMES = re.compile(r'\bvalues? ?[x×*/] ?\d', re.I)
+"""A factor that a sentence states."""
+COUNTED = re.compile(
+    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end', re.I
+)
+"""Labels of rows of numbers that do not scale the cells."""
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
@@ -429,19 +440,24 @@ class _Above:
 
     def _factors(self) -> str:
         """Return the first row that states a scale other than 1, or an offset other than 0."""
-        begin = self.block.begin
-        first = self.block.rows[begin:][:FOLLOWING]
+        first = self.block.rows[self.block.begin :][:FOLLOWING]
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
-            key, sign, value = label.partition(':')
+            key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')
             match = FACTOR.search(key.lower())
-            numbers = [one for one in ([value] if sign else cells) if _kind(one.strip()) == 'n']
+            numbers = [value.split()[0]] if sign and value.split() else cells
+            numbers = [
+                one for one in numbers if NUMBER.fullmatch(one) and any(map(str.isdigit, one))
+            ]
             plain = re.compile(
                 '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
             )
             if match and not all(plain.fullmatch(one.strip()) for one in numbers):
                 return ' '.join(filter(None, row))
-        return next((' '.join(row) for row in self._rows_of_factors()), '')
+            if TIMES.search(label):
+                return label
+        rows = [*self._rows_of_factors(), *self._labelled_rows(first)]
+        return next((' '.join(row) for row in rows), '')
 
     def _rows_of_factors(self) -> Iterator[list[str]]:
         """Yield rows of numbers below the names that are neither 1, 0, nor those of columns."""
@@ -452,6 +468,23 @@ class _Above:
                 first = int(row[0]) if row[0] in ('0', '1') else math.nan
                 numbered = [float(first + at) for at in range(self.width)]
                 if numbers - {1.0} and numbers - {0.0} and [*map(_number, row)] != numbered:
+                    yield row
+
+    def _labelled_rows(self, first: Sequence[list[str]]) -> Iterator[list[str]]:
+        """Yield rows of numbers behind a label that stand between the names and the rows."""
+        if [_kind(row[0]) for row in first if row].count('x') > 2:
+            return  # a column of texts
+        below = itertools.dropwhile(lambda one: not _known(one[1]), self.wide)
+        for row in [*(row for _, row in below), *first[:2]]:
+            label, *cells = row or ['']
+            numbers = {*map(_number, cells)}
+            of_others = COUNTED.search(label) or is_unit(label) or property_of(label)
+            if len(row) == self.width > 2 and _kind(label) == 'x' and not of_others:
+                if (
+                    all(_kind(cell) == 'n' for cell in cells)
+                    and numbers - {1.0}
+                    and numbers - {0.0}
+                ):
                     yield row
 
     def _surplus(self, first: int, names: int) -> str:
