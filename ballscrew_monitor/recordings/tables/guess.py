@@ -61,6 +61,7 @@ from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.tables.unit_names import unknown_unit, words_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
+import polars as pl
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
 from surrogate.units import MILLI, TURN
@@ -75,6 +76,12 @@ NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
 APART = 0.05  # of the rows that hold neither of two signals of joined tables
+PARTS = {
+    **dict.fromkeys('ms msec millis millisecond milliseconds millisekunden'.split(), 1e-3),
+    **dict.fromkeys('us usec micros microsecond microseconds'.split(), 1e-6),
+    **dict.fromkeys('ns nsec nanos nanosec nanosecond nanoseconds'.split(), 1e-9),
+}
+"""Names of columns with parts of the seconds in another, and these parts [s]."""
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
@@ -428,6 +435,12 @@ class _Guesser:
             if fault := self._fault(one, values):
                 self.not_times.append(f'column {short(repr(one.column))}: {fault}')
                 continue
+            if part := self._parts_of_seconds(one, values):
+                self.not_times.append(
+                    f'column {short(repr(one.column))}: it holds whole seconds, and column '
+                    f'{short(repr(part))} their parts: join both in one column'
+                )
+                continue
             self.notes += [f'{why}; it is left out' for why in self.not_times]
             return self._time_of(one, values) | dated
         return {}
@@ -457,6 +470,23 @@ class _Guesser:
             gate.finish()
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
+
+    def _parts_of_seconds(self, one: Named, values: Array) -> str:
+        """Return the column of the parts of whole seconds, where rows spread in them miss it."""
+        names_of = {name: ''.join(words_of(names.base_of(name))) for name in self.source.names()}
+        part = next((name for name, word in names_of.items() if word in PARTS), '')
+        if (
+            not part
+            or (values != np.floor(values)).any()
+            or self._unit_of_time(one, values)[0] != 's'
+        ):
+            return ''
+        cells = self.source.first_rows()[part].cast(pl.Float64, strict=False).to_numpy()
+        first = values[: len(cells)]
+        steps = np.diff(cells[: len(first)])[np.diff(first) == 0.0] * PARTS[names_of[part]]
+        spread = _period(values)
+        alike = len(steps) and abs(np.median(steps) / spread - 1.0) < APART
+        return '' if not len(steps) or alike else part
 
     def _unit_of_time(self, one: Named, values: Array) -> tuple[str, str]:
         """Return the unit of times, empty if unknown, and why it is that if nothing states it."""

@@ -65,7 +65,7 @@ FACTOR = re.compile(
     r'empfindlichkeit|(?:scaling|polynomial) coefficient)s?\W*$'
 )
 """Words of what scales or shifts the cells, at the end of a label."""
-TIMES = re.compile(r'\bvalues? ?[x×*/] ?\d', re.I)
+TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
 """A factor that a sentence states."""
 COUNTED = re.compile(
     r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end', re.I

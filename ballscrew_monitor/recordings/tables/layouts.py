@@ -54,7 +54,8 @@ REMARK = re.compile(
 """A period or rate that a remark plainly states of the rows."""
 MAY_BE_PERIOD = re.compile(
     r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt|frequen|rate\b)\D*?\d[\d.,]*\s*'
-    r'(?:[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)\b',
+    r'(?:[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)\b|'
+    r'(?:cycle|period|interval|zyklus)\w* *[\[(][numµμ]?s[\])]\W*\d',
     re.I,
 )
 """A period or rate that may be one of rows or of something else."""

@@ -883,7 +883,13 @@ def test_an_oil_of_the_head_is_named_beside_the_one_that_is_taken(tmp_path):
 @pytest.mark.parametrize('in_turn', [True, False])
 @pytest.mark.parametrize(
     ('column', 'cells'),
-    [('axis', 'XY'), ('Achse', '12'), ('device', 'AB'), ('Machine', ('M1', 'M2'))],
+    [
+        ('axis', 'XY'),
+        ('Achse', '12'),
+        ('device', 'AB'),
+        ('Serial', '57'),
+        ('Machine', ('M1', 'M2')),
+    ],
 )
 def test_rows_of_several_axes_or_machines_are_refused(column, cells, in_turn, tmp_path, refused):
     rows = [(at / 50, cell, at % 7 - 3) for at in range(60) for cell in cells]
@@ -900,3 +906,21 @@ def test_a_column_of_one_axis_alone_refuses_nothing(tmp_path):
     log = tmp_path / 'log.csv'
     log.write_text(f't [s];axis;velocity [mm/s]\n{rows}')
     assert guess(log).content['axes']
+
+
+@pytest.mark.parametrize('part', ['ms', 'Millisecond'])
+@pytest.mark.parametrize(('rows', 'asked'), [(50, True), (100, False)])
+def test_whole_seconds_with_their_parts_apart_are_no_time_where_rows_miss(
+    part, rows, asked, tmp_path
+):
+    text = ''.join(
+        f'12:00:{second:02d};{10 * row};{100.0 + second + row / 100}\n'
+        for second in range(12)
+        for row in range(rows)
+    )
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Time;{part};x position [mm]\n{text}')
+    result = guess(log)
+    time = result.content['time']
+    assert time.get('column') == (None if asked else 'Time')
+    assert any(repr(part) in why for why in result.unstated) is asked

@@ -125,6 +125,7 @@ def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
         ('Gain (v): 2\nt;v;F\n', 'Gain (v): 2'),
         ('v resolution: 2 mm/s\nt;v;F\n', 'v resolution: 2 mm/s'),
         ('All values x 2\nt;v;F\n', 'All values x 2'),
+        ('Scaling: v = raw / 10\nt;v;F\n', 'Scaling: v = raw / 10'),
         ('Multiplier: 1.0\nt;v;F\n', ''),
         ('Name;v;F\nScaleFactor;1;1\nOffset;0;0.0\n', ''),
     ],
