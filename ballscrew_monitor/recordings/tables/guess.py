@@ -227,6 +227,7 @@ class _Guesser:
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
         self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
+        self._refuse_marks_of_none(columns)
         for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
             self.data[one.column] = self.data[one.column] * one.scale
             self.sampled[one.column] = self.sampled[one.column] * one.scale
@@ -248,6 +249,18 @@ class _Guesser:
                 raise InputError(
                     f'log {self.path}: its rows are of several axes or machines, which column '
                     f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
+                )
+
+    def _refuse_marks_of_none(self, inputs: Sequence[Named]) -> None:
+        """Raise InputError for an input with a number that stands for none, as -9999."""
+        for one in [one for one in inputs if one.column in self.data]:
+            values = self.data[one.column]
+            mark = estimates.mark_of_none(values)
+            if math.isfinite(mark):
+                raise InputError(
+                    f'log {self.path}: column {short(repr(one.column))} holds {mark:g} in '
+                    f'{np.count_nonzero(values == mark)} rows, far beyond all others, as a mark '
+                    'of no value: leave these cells empty'
                 )
 
     def _marks(self, inputs: Sequence[Named]) -> dict[str, dict[str, dict[str, Any]]]:

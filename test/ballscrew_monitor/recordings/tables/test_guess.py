@@ -924,3 +924,22 @@ def test_whole_seconds_with_their_parts_apart_are_no_time_where_rows_miss(
     time = result.content['time']
     assert time.get('column') == (None if asked else 'Time')
     assert any(repr(part) in why for why in result.unstated) is asked
+
+
+@pytest.mark.parametrize('mark', [-9999.0, 999.9, 32767.0, 655.35, 327.67])
+@pytest.mark.parametrize('place', ['x_velocity_mm_s', 'x_force_N'])
+def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tmp_path, refused):
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.8 * SPEED}
+    held = columns[place].copy()
+    held[50:54] = mark
+    log = write_csv(tmp_path / 'log.csv', columns | {place: held}, form='{:.7g}')
+    with refused('mark_of_none', column=repr(place), mark=f'{mark:g}', count='4'):
+        guess(log)
+
+
+@pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])
+def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_csv, tmp_path):
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.3 * SPEED}
+    columns['x_force_N'][50 : 50 + count] = mark
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    assert guess(log).content['axes']['x']['load']
