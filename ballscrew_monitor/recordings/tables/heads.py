@@ -633,7 +633,7 @@ class _Above:
             period = self._stated_period(line, row)
             if period is not None and 0.0 < period <= LONGEST_PERIOD:
                 stated.append((period, line.row, text))
-            elif len(row) > 1 and _known(row):
+            elif len(row) > 1 and _known(row) and not any(_kind(cell) == 'n' for cell in row):
                 continue  # names of columns
             elif period is not None or MAY_BE_PERIOD.search(text):
                 unclear.append(text)

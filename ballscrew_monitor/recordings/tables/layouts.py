@@ -55,7 +55,8 @@ REMARK = re.compile(
 MAY_BE_PERIOD = re.compile(
     r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt|frequen|rate\b)\D*?\d[\d.,]*\s*'
     r'(?:[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)\b|'
-    r'(?:cycle|period|interval|zyklus)\w* *[\[(][numµμ]?s[\])]\W*\d',
+    r'(?:cycle|period|interval|zyklus)\w* *[\[(][numµμ]?s[\])]\W*\d|'
+    r'^\W*(?:rate|frequency|frequenz|period|interval|cycle time)\W*\d',
     re.I,
 )
 """A period or rate that may be one of rows or of something else."""

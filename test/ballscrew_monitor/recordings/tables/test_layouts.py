@@ -342,6 +342,8 @@ def test_a_period_is_that_of_rows_with_its_unit_or_none(line, period, tmp_path):
         'Period: 12 s',
         'Interval: 60 s',
         'Period (ms);10',
+        '# Rate: 100',
+        '# Frequency = 100',
         'Sample time: 12 s',
         '# Sample duration: 12 s',
         '# Sampled 12 s, 100 Hz',
