@@ -26,6 +26,25 @@ LONGEST_AXIS = 20.0  # [m]
 FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
 ROUNDED = 1e-3  # of a turn, by which a scale of few digits goes beyond one
+FULL = frozenset(
+    round(count * part, 9)
+    for part in (1.0, 0.1, 0.01, 1e-3)
+    for count in (*(10**digits - 1 for digits in range(3, 8)), *(2**15 - 1, 2**15, 2**16 - 1))
+)
+"""Amounts that a control writes for no value: all digits 9, or a full integer, and parts of it."""
+HELD, FAR, MOST_HELD = 3, 3.0, 0.2  # rows of such an amount, times all others, part of all rows
+
+
+def mark_of_none(values: Array) -> float:
+    """Return the value by which rows are marked that hold none: full, and far from all; or NaN."""
+    known = values[np.isfinite(values)]
+    for value in (known.min(), known.max()) if len(known) else ():
+        others = np.abs(known[known != value])
+        count = len(known) - len(others)
+        if round(abs(value), 9) in FULL and HELD <= count <= MOST_HELD * len(known):
+            if np.all(FAR * others < abs(value)):
+                return float(value)
+    return math.nan
 
 
 def is_silent(values: Array) -> bool:

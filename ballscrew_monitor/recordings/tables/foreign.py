@@ -22,7 +22,7 @@ from xml.etree import ElementTree
 from ballscrew_monitor.recordings.tables import line_messages, long_form
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
-from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, RECORDER
+from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, LONGEST_PERIOD, RECORDER
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
@@ -49,6 +49,12 @@ SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue',
 GROUPED = ('mat', 'hdf', 'tdms')
 """Kinds whose signals are in groups, as `run.speed`."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
+RATES = frozenset(
+    'fs rate samplerate samplingrate samplefrequency samplingfrequency frequency'.split()
+)
+PERIODS = frozenset('ts dt sampletime samplingtime sampleperiod samplingperiod period'.split())
+DOUBTFUL = frozenset('rate frequency period'.split())
+"""Names of numbers that may be the rate or period of rows; the doubtful ones may be of others."""
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
 
@@ -58,7 +64,8 @@ class Signals:
     Signals of a file as a frame, and what the file says besides them; a period in [s].
 
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
-    to be scaled. `left_out` has the reason why a part of the file is not among them, by its name.
+    to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
+    reason why a part of the file is not among them, by its name.
 
     """
 
@@ -68,6 +75,7 @@ class Signals:
     separator: str = ''
     program: Format | None = None
     factors: str = ''
+    unclear_period: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     def head(self) -> Head:
@@ -81,6 +89,7 @@ class Signals:
             first=1,
             properties=properties,
             period=self.period,
+            unclear_period=self.unclear_period,
             factors=self.factors,
         )
 
@@ -144,18 +153,38 @@ def _json(path: Path) -> Signals:
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
-    left_out = {}
+    left_out, factors = {}, ''
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
+        factors = ', '.join(_stated_factors(content))
         if not records:
-            return Signals(frame=_side_by_side(lists))
+            return Signals(frame=_side_by_side(lists), factors=factors)
         content = lists[records[0]]
         left_out = dict.fromkeys(records[1:], f'the records of {records[0]} come before it')
     if not _are_all(dict, content):
         raise TypeError
     frame = pl.from_dicts(content, infer_schema_length=None)
-    return Signals(frame=frame, left_out=left_out)
+    return Signals(frame=frame, left_out=left_out, factors=factors)
+
+
+def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[str]:
+    """Yield numbers besides the signals that may scale these, by the words of their paths."""
+    for key, value in content.items():
+        name = f'{before}{key}'
+        if isinstance(value, dict):
+            yield from _stated_factors(value, f'{name}.')
+            continue
+        of = next((word for part in name.split('.') if (word := _factor(part))), '')
+        if of and np.asarray(value).dtype.kind in 'iuf':
+            if (np.asarray(value) != (0.0 if of == 'offset' else 1.0)).any():
+                yield f'{name} {np.squeeze(value)}'
+
+
+def _factor(label: str) -> str:
+    """Return the word of a label for what scales or shifts the values, empty for any other."""
+    match = FACTOR.search(label.lower().replace('_', ' '))
+    return match[1] if match else 'cal' if label.lower() == 'cal' else ''
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
@@ -260,9 +289,10 @@ def _hdf(path: Path) -> Signals:
 
     def visit(name: str, item: Any) -> None:
         nonlocal room
-        if not isinstance(item, h5py.Dataset):
-            return
         called = name.replace('/', '.')
+        if not isinstance(item, h5py.Dataset):
+            factors.extend(_unclear_factors(called, item.attrs))
+            return
         if item.dtype.kind not in 'iufb' and not item.dtype.names:
             found[called] = np.broadcast_to(np.void(b' '), item.shape or ())  # which is no number
             return
@@ -278,8 +308,11 @@ def _hdf(path: Path) -> Signals:
             factors.extend(_unclear_factors(called, item.attrs))
 
     with h5py.File(path, 'r') as file:
+        factors.extend(_unclear_factors('', file.attrs))
         file.visititems(visit)
-    return dataclasses.replace(_arrays(found), factors=', '.join(factors))
+    signals = _arrays(found)
+    told = ', '.join(filter(None, [*factors, signals.factors]))
+    return dataclasses.replace(signals, factors=told)
 
 
 def _scaled(dataset: Any) -> Any:
@@ -292,27 +325,25 @@ def _scaled(dataset: Any) -> Any:
     return known * attributes.get(SCALE_FACTOR, 1.0) + attributes.get(ADD_OFFSET, 0.0)
 
 
-def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterator[str]:
-    """Yield attributes of a dataset that may scale it, which no convention defines."""
-    for key, value in attributes.items():
-        plain = 0.0 if 'offset' in key.lower() else 1.0
-        if key not in (SCALE_FACTOR, ADD_OFFSET) and FACTOR.search(key.lower().replace('_', ' ')):
-            if np.asarray(value).dtype.kind in 'iuf' and (np.asarray(value) != plain).any():
-                yield f'{name}: {key} {np.squeeze(value)}'
+def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterable[str]:
+    """Return attributes of a dataset that may scale it, which no convention defines."""
+    known = (SCALE_FACTOR, ADD_OFFSET)
+    numbers = {key: value for key, value in attributes.items() if key not in known}
+    of = f'{name}: ' if name else ''
+    return (f'{of}{told}' for told in _stated_factors(numbers))
 
 
 def _arrays(content: Mapping[str, Any]) -> Signals:
     """Return arrays as signals: those of one length, and columns of a matrix, side by side."""
     held: dict[str, Any] = {}
     left_out: dict[str, str] = {}
-    period, rates = math.nan, {'fs', 'rate', 'samplerate', 'samplingrate', 'frequency'}
-    periods = {'ts', 'dt', 'sampletime', 'period', 'samplingperiod'}
+    periods: dict[str, float] = {}
     for name, value in content.items():
         array, last = np.asarray(value), re.sub('[_ ]', '', name.rpartition('.')[2].lower())
         if array.dtype.kind not in 'iufb':
             left_out |= {name: 'it holds no numbers'} if array.size > 1 else {}
-        elif array.ndim == 0 and float(array) > 0.0 and last in rates | periods:
-            period = 1.0 / float(array) if last in rates else float(array)
+        elif array.ndim == 0 and float(array) > 0.0 and last in RATES | PERIODS:
+            periods[name] = 1.0 / float(array) if last in RATES else float(array)
         elif array.ndim == 1 and len(array) > 1:
             held[name] = array.astype(np.float64)
         elif array.ndim == 2 and min(array.shape) <= limits.COLUMNS:
@@ -321,7 +352,27 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
                 held[f'{name} {at + 1}'] = tall[:, at].astype(np.float64)
         elif array.size > 1:
             left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
-    return Signals(frame=_side_by_side(held), period=period, left_out=left_out)
+    scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
+    told = ', '.join(f'{name} = {float(content[name]):g}' for name in periods)
+    period = _period_of_rows(periods, held)
+    return Signals(
+        frame=_side_by_side(held),
+        period=period,
+        factors=', '.join(_stated_factors(scalars)),
+        unclear_period=told if math.isnan(period) else '',
+        left_out=left_out,
+    )
+
+
+def _period_of_rows(periods: Mapping[str, float], arrays: Iterable[str]) -> float:
+    """Return the only period [s] if its name is plain and all arrays stand beside it, else NaN."""
+    if len(periods) != 1:
+        return math.nan
+    ((name, period),) = periods.items()
+    group, _, last = name.rpartition('.')
+    beside = all(one.rpartition('.')[0] == group for one in arrays)
+    plain = last.lower() not in DOUBTFUL
+    return period if beside and plain and period <= LONGEST_PERIOD else math.nan
 
 
 def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
@@ -340,14 +391,18 @@ def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
 def _tdms(path: Path) -> Signals:
     file = _optional('nptdms', path, 'TDMS', 'npTDMS').TdmsFile.read(path)
     held: dict[str, Any] = {}
-    period, groups = math.nan, file.groups()
+    periods, groups = set(), file.groups()
     for group in groups:
         before = f'{group.name}.' if len(groups) > 1 else ''
         for channel in group.channels():
             unit, name = channel.properties.get('unit_string', ''), f'{before}{channel.name}'
             held[f'{name} [{unit}]' if unit else name] = channel[:]
-            period = float(channel.properties.get('wf_increment', period))
-    return Signals(frame=_side_by_side(held), period=period)
+            if 'wf_increment' in channel.properties:
+                periods.add(float(channel.properties['wf_increment']))
+    unclear = ', '.join(f'wf_increment = {one:g}' for one in sorted(periods))
+    if len(periods) == 1:
+        return Signals(frame=_side_by_side(held), period=periods.pop())
+    return Signals(frame=_side_by_side(held), unclear_period=unclear)
 
 
 def _mdf(path: Path) -> Signals:

@@ -34,7 +34,14 @@ from ballscrew_monitor.recordings.tables.dates import (
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.marked import look_at_marks
-from ballscrew_monitor.recordings.tables.marks import backward_cells, Mark, Marks, valid_cells
+from ballscrew_monitor.recordings.tables.marks import (
+    backward_cells,
+    Mark,
+    Marks,
+    MOST,
+    tells_apart,
+    valid_cells,
+)
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
@@ -54,6 +61,7 @@ from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.tables.unit_names import unknown_unit, words_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
+import polars as pl
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
 from surrogate.units import MILLI, TURN
@@ -69,6 +77,12 @@ EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
 APART = 0.05  # of the rows that hold neither of two signals of joined tables
 SAME_WAY = 0.05  # of its way by which a position may differ from another of the same axis
+PARTS = {
+    **dict.fromkeys('ms msec millis millisecond milliseconds millisekunden'.split(), 1e-3),
+    **dict.fromkeys('us usec micros microsecond microseconds'.split(), 1e-6),
+    **dict.fromkeys('ns nsec nanos nanosec nanosecond nanoseconds'.split(), 1e-9),
+}
+"""Names of columns with parts of the seconds in another, and these parts [s]."""
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
@@ -185,6 +199,7 @@ class _Guesser:
                 f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
+        self._refuse_several()
         self.marks = self._marks(columns)
         source = self.source = source.marked(self._known_marks())
         others = [
@@ -220,6 +235,7 @@ class _Guesser:
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
         self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
+        self._refuse_marks_of_none(columns)
         for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
             self.data[one.column] = self.data[one.column] * one.scale
             self.sampled[one.column] = self.sampled[one.column] * one.scale
@@ -228,6 +244,32 @@ class _Guesser:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
         self._forget_speeds()
+
+    def _refuse_several(self) -> None:
+        """Raise InputError for rows of several axes or machines that a column tells apart."""
+        used = {one.column for chosen in self.axes.values() for one in chosen.values()}
+        held = [name for name in self.source.names() if name not in used]
+        columns = [name for name in held if tells_apart(words_of(names.base_of(name)))]
+        if not columns:
+            return
+        for column, cells in look_at_marks(self.source.blocks(columns), columns)[1].items():
+            if 1 < len(cells) <= MOST:
+                raise InputError(
+                    f'log {self.path}: its rows are of several axes or machines, which column '
+                    f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
+                )
+
+    def _refuse_marks_of_none(self, inputs: Sequence[Named]) -> None:
+        """Raise InputError for an input with a number that stands for none, as -9999."""
+        for one in [one for one in inputs if one.column in self.data]:
+            values = self.data[one.column]
+            mark = estimates.mark_of_none(values)
+            if math.isfinite(mark):
+                raise InputError(
+                    f'log {self.path}: column {short(repr(one.column))} holds {mark:g} in '
+                    f'{np.count_nonzero(values == mark)} rows, far beyond all others, as a mark '
+                    'of no value: leave these cells empty'
+                )
 
     def _marks(self, inputs: Sequence[Named]) -> dict[str, dict[str, dict[str, Any]]]:
         """Return what a map says of the marks of each input: their columns, and cells if clear."""
@@ -415,6 +457,12 @@ class _Guesser:
             if fault := self._fault(one, values):
                 self.not_times.append(f'column {short(repr(one.column))}: {fault}')
                 continue
+            if part := self._parts_of_seconds(one, values):
+                self.not_times.append(
+                    f'column {short(repr(one.column))}: it holds whole seconds, and column '
+                    f'{short(repr(part))} their parts: join both in one column'
+                )
+                continue
             self.notes += [f'{why}; it is left out' for why in self.not_times]
             return self._time_of(one, values) | dated
         return {}
@@ -444,6 +492,23 @@ class _Guesser:
             gate.finish()
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
+
+    def _parts_of_seconds(self, one: Named, values: Array) -> str:
+        """Return the column of the parts of whole seconds, where rows spread in them miss it."""
+        names_of = {name: ''.join(words_of(names.base_of(name))) for name in self.source.names()}
+        part = next((name for name, word in names_of.items() if word in PARTS), '')
+        if (
+            not part
+            or (values != np.floor(values)).any()
+            or self._unit_of_time(one, values)[0] != 's'
+        ):
+            return ''
+        cells = self.source.first_rows()[part].cast(pl.Float64, strict=False).to_numpy()
+        first = values[: len(cells)]
+        steps = np.diff(cells[: len(first)])[np.diff(first) == 0.0] * PARTS[names_of[part]]
+        spread = _period(values)
+        alike = len(steps) and abs(np.median(steps) / spread - 1.0) < APART
+        return '' if not len(steps) or alike else part
 
     def _unit_of_time(self, one: Named, values: Array) -> tuple[str, str]:
         """Return the unit of times, empty if unknown, and why it is that if nothing states it."""
@@ -631,6 +696,11 @@ class _Guesser:
         }
         found = estimates.period(list(motions.values()))
         why = '; '.join(self.not_times or ['no column is named as a time', *self._rising()])
+        if unclear := self.head.unclear_period:
+            why += (
+                f'; the head says {short(repr(unclear))}, which may be the time of something else '
+                'than rows'
+            )
         if math.isfinite(found):
             why += (
                 f'; at {1.0 / found:.3g} Hz the speeds of axes {", ".join(motions)} make their '
@@ -696,19 +766,18 @@ class _Guesser:
             used[kind] |= {'time': group} if group != time else {}
             self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
-            self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
+            stated = self._statement(key) or 'the log does not say it'
+            self._assume(f'{name}.{key}', value, f'{stated}; the shipped one')
         self._set_lead(name)
         self._set_load(name)
+        self._ask_for_gear(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
-            self._assume(
-                f'{name}.temperature_degC',
-                TEMPERATURE,
-                'no column is the oil temperature of this axis',
-            )
+            why = 'no column is the oil temperature of this axis'
+            self._set_by_head(name, 'temperature_degC', TEMPERATURE, why)
         if 'speed' in used and not self._is_decimal_open():
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
@@ -1004,6 +1073,17 @@ class _Guesser:
         """Assume the lead of the usual screw; where the log has another the map states it."""
         usual, lead = _usual_lead(), self._lead(name)
         why = f'the log does not say it; that of {SCREW}'
+        stated = self.head.machine.get('lead_mm')
+        if stated and not abs(lead * MILLI / stated.value - 1.0) > SAME_LEAD:
+            self._set_by_head(name, 'lead_mm', math.nan, '')
+            return
+        if stated:
+            self.used[name]['lead_mm'] = None
+            self.unstated.append(
+                f'state axes.{name}.lead_mm in the map: {self._statement("lead_mm")}, while '
+                f'position and speed agree at {lead * MILLI:.3g} mm'
+            )
+            return
         if abs(lead / usual - 1.0) <= SAME_LEAD:
             why = f'that of {SCREW}, at which position and speed agree'
         elif math.isfinite(lead):
@@ -1015,6 +1095,39 @@ class _Guesser:
             )
             return
         self._assume(f'{name}.lead_mm', float(f'{usual * MILLI:.6g}'), why)
+
+    def _statement(self, key: str) -> str:
+        """Return the line of the head that says something of the machine, empty for none."""
+        stated = self.head.machine.get(key)
+        return f'the head says {short(repr(stated.text))}' if stated else ''
+
+    def _set_by_head(self, name: str, key: str, usual: float, why: str) -> None:
+        """Take a number from the head if it is clear, ask if it is not, else assume the usual."""
+        stated = self.head.machine.get(key)
+        if stated is None:
+            self._assume(f'{name}.{key}', usual, why)
+        elif math.isfinite(stated.value) and len(self.axes) == 1:
+            self._assume(f'{name}.{key}', stated.value, self._statement(key))
+        else:
+            self.used[name][key] = None
+            self.unstated.append(f'state axes.{name}.{key} in the map: {self._statement(key)}')
+
+    def _ask_for_gear(self, name: str) -> None:
+        """Let the map scale what may be of the motor where the head states a gear."""
+        stated, used = self.head.machine.get('gear'), self.used[name]
+        if stated is None or stated.value == 1.0:
+            return
+        for kind in (*MOTION, *MOTOR):
+            unit = self._unit(name, kind) if kind in used else ''
+            turns = unit in (*conversions.ROTARY_POSITION_UNITS, *conversions.ROTARY_SPEED_UNITS)
+            makes_load = kind in MOTOR and 'load' in used and used['load'].get('from') == kind
+            if turns or (kind in used and (makes_load or 'load' not in used)):
+                used[kind]['scale'] = None
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.scale in the map, what makes '
+                    f'{used[kind]["column"]} that of the screw, 1 if it is: '
+                    f'{self._statement("gear")}'
+                )
 
     def _lead(self, name: str) -> float:
         """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""
@@ -1083,7 +1196,7 @@ class _Guesser:
         """Assume what makes a torque of a current; ask for the rated torque of one in %."""
         if self._unit(name, kind) != RATED:
             why = 'the log does not say it; it is on the plate of the motor'
-            self._assume(f'{name}.torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+            self._set_by_head(name, 'torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
             return
         self.used[name]['torque_rated_Nm'] = None
         self.unstated.append(

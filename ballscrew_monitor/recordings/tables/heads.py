@@ -21,7 +21,11 @@ from ballscrew_monitor.recordings.tables.layouts import (
     COLUMN,
     Format,
     format_of,
+    LONGEST_PERIOD,
+    MACHINE,
+    MAY_BE_PERIOD,
     OTHER_PERIOD,
+    OTHER_ROWS,
     period_of,
     property_of,
     REMARK,
@@ -61,7 +65,18 @@ BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I
 """A factor of a time, where a row of factors says no more."""
 USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
 LONGEST_GAP = 100.0  # times the usual step, after the first time of a table
-FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
+FACTOR = re.compile(
+    r'(scale|scaling|factor|gain|offset|faktor|skalierung|multiplier|resolution|slope|sensitivity|'
+    r'calibration|conversion|lsb|decimals|exponent|kalibrierung|umrechnung|auflösung|wertigkeit|'
+    r'empfindlichkeit|(?:scaling|polynomial) coefficient)s?\W*$'
+)
+"""Words of what scales or shifts the cells, at the end of a label."""
+TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
+"""A factor that a sentence states."""
+COUNTED = re.compile(
+    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end', re.I
+)
+"""Labels of rows of numbers that do not scale the cells."""
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
@@ -89,6 +104,14 @@ class Property:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Statement:
+    """A text of the machine, and its value in the unit of a map, NaN where it is unclear."""
+
+    text: str
+    value: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Head:
     """
     Names of the columns, how the cells are parted, and what stands above the first of them.
@@ -96,7 +119,9 @@ class Head:
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
     file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
     `labelled` are the columns that the head gives no name of their own; without `named` it names
-    none. `properties` are those of the file by their words, `factors` a row that scales cells.
+    none. `properties` are those of the file by their words, `factors` a row that scales cells,
+    `unclear_period` a line with a period that may be one of something else than rows, `machine`
+    what is said of the machine, by the keys of `MACHINE`.
 
     """
 
@@ -112,6 +137,8 @@ class Head:
     properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
     period: float = math.nan
     period_row: int = 0
+    unclear_period: str = ''
+    machine: Mapping[str, Statement] = dataclasses.field(default_factory=dict)
     factors: str = ''
 
     def surplus(self, row: int, cells: int) -> str:
@@ -419,7 +446,7 @@ class _Above:
         symbols = self._row('symbol')
         properties = self._properties()
         periods = self._periods(told)
-        period, row = self._period(properties, {*periods.values()})
+        period, row, unclear = self._period({*periods.values()})
         return Head(
             names=told,
             separator=self.separator,
@@ -433,24 +460,31 @@ class _Above:
             properties=properties,
             period=period,
             period_row=row,
+            unclear_period=unclear,
+            machine=self._machine(),
             factors=self._factors(),
         )
 
     def _factors(self) -> str:
         """Return the first row that states a scale other than 1, or an offset other than 0."""
-        begin = self.block.begin
-        first = self.block.rows[begin:][:FOLLOWING]
+        first = self.block.rows[self.block.begin :][:FOLLOWING]
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
-            key, sign, value = label.partition(':')
+            key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')
             match = FACTOR.search(key.lower())
-            numbers = [one for one in ([value] if sign else cells) if _kind(one.strip()) == 'n']
+            numbers = [value.split()[0]] if sign and value.split() else cells
+            numbers = [
+                one for one in numbers if NUMBER.fullmatch(one) and any(map(str.isdigit, one))
+            ]
             plain = re.compile(
                 '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
             )
             if match and not all(plain.fullmatch(one.strip()) for one in numbers):
                 return ' '.join(filter(None, row))
-        return next((' '.join(row) for row in self._rows_of_factors()), '')
+            if TIMES.search(label):
+                return label
+        rows = [*self._rows_of_factors(), *self._labelled_rows(first)]
+        return next((' '.join(row) for row in rows), '')
 
     def _rows_of_factors(self) -> Iterator[list[str]]:
         """Yield rows of numbers below the names that are neither 1, 0, nor those of columns."""
@@ -461,6 +495,23 @@ class _Above:
                 first = int(row[0]) if row[0] in ('0', '1') else math.nan
                 numbered = [float(first + at) for at in range(self.width)]
                 if numbers - {1.0} and numbers - {0.0} and [*map(_number, row)] != numbered:
+                    yield row
+
+    def _labelled_rows(self, first: Sequence[list[str]]) -> Iterator[list[str]]:
+        """Yield rows of numbers behind a label that stand between the names and the rows."""
+        if [_kind(row[0]) for row in first if row].count('x') > 2:
+            return  # a column of texts
+        below = itertools.dropwhile(lambda one: not _known(one[1]), self.wide)
+        for row in [*(row for _, row in below), *first[:2]]:
+            label, *cells = row or ['']
+            numbers = {*map(_number, cells)}
+            of_others = COUNTED.search(label) or is_unit(label) or property_of(label)
+            if len(row) == self.width > 2 and _kind(label) == 'x' and not of_others:
+                if (
+                    all(_kind(cell) == 'n' for cell in cells)
+                    and numbers - {1.0}
+                    and numbers - {0.0}
+                ):
                     yield row
 
     def _surplus(self, first: int, names: int) -> str:
@@ -567,43 +618,81 @@ class _Above:
 
     def _properties(self) -> dict[str, Property]:
         found: dict[str, Property] = {}
-        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
-        for line, _ in self.lines:
-            key, value = ('', '') if line in wide else _key_and_value(line, self.separator)
+        for line, _ in self._narrow():
+            key, value = _key_and_value(line, self.separator)
             kind = property_of(key)
-            if kind and value and not (kind in found or kind in self.rows):
-                stated = BRACKETS.findall(key)
-                if kind in ('period', 'rate'):
-                    if OTHER_PERIOD.search(line.raw):
-                        continue
-                    usual = unit_of_period(key) if kind == 'period' else 'Hz'
-                    bare = usual if re.fullmatch(r'[\d.,e+-]+', value, re.I) else ''
-                    value = f'{value} {stated[0] if stated else bare}'
+            if kind not in ('', 'period', 'rate', *found, *self.rows) and value:
                 found[kind] = Property(text=value, row=line.row)
         return found
 
-    def _period(
-        self, properties: Mapping[str, Property], of_columns: Collection[float]
-    ) -> tuple[float, int]:
+    def _machine(self) -> dict[str, Statement]:
+        """Return what the lines say of the machine; several that differ are unclear."""
+        found: dict[str, Statement] = {}
+        for line, row in self._narrow():
+            text = ' '.join((line.raw or ' '.join(line.cells)).split())
+            if (len(row) > 1 and _known(row)) or _is_of_numbers(row):
+                continue
+            key, value = _key_and_value(line, self.separator)
+            for name, of in MACHINE.items():
+                stated = of.value_of(key, value)
+                if math.isfinite(stated) or of.hint.search(text):
+                    if (before := found.get(name)) and before.value != stated:
+                        text, stated = f'{before.text}; {text}', math.nan
+                    found[name] = Statement(text=text, value=stated)
+        return found
+
+    def _narrow(self) -> Iterator[tuple[Line, list[str]]]:
+        """Yield the lines that say something of the file."""
+        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
+        return ((line, row) for line, row in self.lines if line not in wide)
+
+    def _period(self, of_columns: Collection[float]) -> tuple[float, int, str]:
         """
         Return the period [s] that the head states, and the row that does so, 0 if for columns.
 
-        That of columns is one of the file if it is the same for all.
+        That of columns is one of the file if it is the same for all. What may be one of something
+        else than rows is returned as its line, and no period with it.
 
         """
+        stated, unclear, others = [], [], []
+        for line, row in self.lines:
+            text = ' '.join((line.raw or ' '.join(line.cells)).split())
+            period = self._stated_period(line, row)
+            if period is not None and 0.0 < period <= LONGEST_PERIOD:
+                stated.append((period, line.row, text))
+            elif len(row) > 1 and _known(row) and not any(_kind(cell) == 'n' for cell in row):
+                continue  # names of columns
+            elif period is not None or MAY_BE_PERIOD.search(text):
+                unclear.append(text)
+            if OTHER_ROWS.search(text):
+                others.append(text)
         if len(of_columns) == 1:
-            return next(iter(of_columns)), 0
-        if 'period' in properties:
-            stated = properties['period']
-            return period_of(stated.text), stated.row
-        if 'rate' in properties:
-            stated = properties['rate']
-            return period_of(stated.text), stated.row
-        for line, _ in self.lines:
-            match = REMARK.search(line.raw)
-            if match and not OTHER_PERIOD.search(line.raw):
-                return period_of(match['number'], match['unit']), line.row
-        return math.nan, 0
+            stated = [(next(iter(of_columns)), 0, '')]
+        if stated and not others and all(math.isclose(one, stated[0][0]) for one, *_ in stated):
+            return *stated[0][:2], ''
+        texts = dict.fromkeys([*(text for *_, text in stated), *unclear, *others])
+        return math.nan, 0, '; '.join(filter(None, texts))
+
+    def _stated_period(self, line: Line, row: Sequence[str]) -> float | None:
+        """Return the period [s] that a line states, NaN if it is unclear, None for none."""
+        text = line.raw or ' '.join(line.cells)
+        key, value = _key_and_value(line, self.separator)
+        cells = [cell for cell in row if cell]
+        if len(cells) == 3 and _kind(cells[1]) == 'n' and math.isfinite(period_of(*cells[1:])):
+            key, value = cells[0], f'{cells[1]} {cells[2]}'
+        elif (line, row) in self.wide and len(cells) > 2:
+            return None
+        kind = property_of(key)
+        if kind in ('period', 'rate') and value and kind not in self.rows:
+            stated = BRACKETS.findall(key)
+            usual = unit_of_period(key) if kind == 'period' else 'Hz'
+            bare = usual if re.fullmatch(r'[\d.,e+-]+', value, re.I) else ''
+            period = period_of(f'{value} {stated[0] if stated else bare}')
+        elif match := REMARK.search(text):
+            period = period_of(match['number'], match['unit'])
+        else:
+            return None
+        return math.nan if OTHER_PERIOD.search(text) else period
 
 
 def _key_and_value(line: Line, separator: str) -> tuple[str, str]:

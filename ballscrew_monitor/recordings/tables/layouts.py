@@ -7,6 +7,7 @@ A property is what a head says of the file or of a column: its name, unit, perio
 
 """
 
+from collections.abc import Mapping
 import dataclasses
 import math
 import re
@@ -20,13 +21,16 @@ PROPERTIES: dict[str, frozenset[str]] = {
     'unit': frozenset('unit units einheit einheiten yunitlabel dimension'.split()),
     'period': frozenset(
         'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
-        'deltax dx dt deltat cycletime cycletimems period interval timestep timeincrement '
-        'xincrement abtastzeit abtastintervall abtastperiode zykluszeit messtakt '
-        'taskcycletime'.split()
+        'sampling samplingcycle deltax dx dt deltat ts cycletimems timestep timeincrement '
+        'xincrement recordinterval recordinginterval loginterval logginginterval traceinterval '
+        'acquisitioninterval abtastzeit abtastintervall abtastperiode abtastung messtakt '
+        'messintervall aufzeichnungsintervall'.split()
     ),
     'rate': frozenset(
-        'samplerate samplingrate samplefrequency samplingfrequency rate fs frequency abtastrate '
-        'abtastfrequenz messrate samplespersecond'.split()
+        'samplerate samplingrate samplefrequency samplingfrequency fs abtastrate '
+        'abtastfrequenz messrate aufzeichnungsrate samplespersecond recordrate recordingrate '
+        'recordingfrequency lograte loggingrate loggingfrequency tracerate tracefrequency '
+        'scanrate acquisitionrate acquisitionfrequency'.split()
     ),
     'start': frozenset(
         'starttime start startdate startdatetime startoftrace startofrecord begin begintime '
@@ -43,17 +47,31 @@ COLUMN = re.compile(
 )
 """The number of a column that a line of its own names."""
 REMARK = re.compile(
-    r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt)\D*?(?P<number>\d[\d.,]*)\s*'
-    r'(?P<unit>ns(?:ec)?|us(?:ec)?|[µμ]s|ms(?:ec)?|s(?:ec(?:onds?)?)?|k?Hz)\b',
+    r'(?:^\W*|[,;]\s*)sampl(?:e|ing) (?:time|period|cycle|interval|rate|frequency)(?: is|:| =)? *'
+    r'(?P<number>\d[\d.,]*)\s*(?P<unit>[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)(?=\W*$|[,;])',
     re.I,
 )
-"""A period or rate that a remark states in a sentence."""
-OTHER_PERIOD = re.compile(
-    r'trigger|control|regel|interpol|decimat|dezim|every|jede|\b(?:of|von|der|des)\b|'
-    r'\d\s*[x*/]\s*\d',
+"""A period or rate that a remark plainly states of the rows."""
+MAY_BE_PERIOD = re.compile(
+    r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt|frequen|rate\b)\D*?\d[\d.,]*\s*'
+    r'(?:[num]?s|[µμ]s|[num]sec|sec(?:onds?)?|k?Hz)\b|'
+    r'(?:cycle|period|interval|zyklus)\w* *[\[(][numµμ]?s[\])]\W*\d|'
+    r'^\W*(?:rate|frequency|frequenz|period|interval|cycle time)\W*\d',
     re.I,
+)
+"""A period or rate that may be one of rows or of something else."""
+OTHER_PERIOD = re.compile(
+    r'trigger|control|regel|interpol|every|jede|\b(?:of|von|der|des)\b|\d\s*[x*/]\s*\d', re.I
 )
 """What makes a stated period one of something else than rows."""
+OTHER_ROWS = re.compile(
+    r'decimat|dezim|(?:down|over|under|sub|re)[- ]?sampl|averag|mittel(?:ung|wert)|gemittelt|'
+    r'untersetz|unterabtast|überabtast|(?:record|logg?|sav|stor|writ|keep)\w* (?:every|each)|'
+    r'\beach \d|\bjede[nrs]?\b|\bevery \d',
+    re.I,
+)
+"""What in a line of its own makes rows other than the samples of which a period is stated."""
+LONGEST_PERIOD = 1.0  # [s], above which a stated period is rather that of a cycle or of the log
 IN_SECONDS = frozenset('deltax dx dt deltat xincrement'.split())
 """Labels of a period that need no unit."""
 THOUSANDS = re.compile(r'[1-9]\d{0,2}[.,]\d{3}')
@@ -64,8 +82,85 @@ RATE = re.compile('(k?)hz')
 PERIODS = {'n': 1e-9, 'u': 1e-6, 'µ': 1e-6, 'μ': 1e-6, 'm': 1e-3, 's': 1.0}
 RATES = {'': 1.0, 'k': 1e3}
 """Units [s] of a period and [Hz] of a rate by their first letter."""
+NUMBER_AND_UNIT = re.compile(r'=?\s*(?P<number>\d+(?:[.,]\d+)?)\s*[\[(]?(?P<unit>[^\])]*)[\])]?')
 SEPARATED = re.compile(r'^\s*"?sep=(?P<sign>.)', re.I)
 """The line by which a spreadsheet tells what separates cells."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class OfMachine:
+    """
+    What a head may say of the machine: plain `words` of it, and `units` in that of the map.
+
+    A text in which `hint` is found may say it in another form.
+
+    """
+
+    words: frozenset[str]
+    units: Mapping[str, float]
+    hint: re.Pattern[str]
+
+    def value_of(self, label: str, text: str) -> float:
+        """Return the value that a text states below a plain label, NaN for any other."""
+        match = NUMBER_AND_UNIT.fullmatch(text.strip())
+        if not match:
+            return math.nan
+        words = re.findall(r'[^\W\d_]+', re.sub(r'[\[(].*?[\])]', '', label).lower())
+        unit = match['unit'] or ''.join(re.findall(r'[\[(](.*?)[\])]', label))
+        if not unit and words[-1:] and words[-1] in self.units:
+            *words, unit = words
+        factor = self.units.get(re.sub(r'[\s·*]+', '', unit).lower(), math.nan)
+        number = float(match['number'].replace(',', '.'))
+        return number * factor if ''.join(words) in self.words else math.nan
+
+
+MACHINE: dict[str, OfMachine] = {
+    'lead_mm': OfMachine(
+        words=frozenset(
+            'lead screwlead ballscrewlead leadofscrew ballscrewpitch screwpitch spindelsteigung '
+            'steigung gewindesteigung'.split()
+        ),
+        units={'mm': 1.0, 'm': 1e3, 'mm/rev': 1.0, 'mm/u': 1.0, 'mm/turn': 1.0},
+        hint=re.compile(
+            r'(?:\blead|pitch|steigung)(?![a-z]*time)[^\d,;]{0,20}\d|'
+            r'(?:screw|spindel|spindle|kgt)\b.*\d\s*[x×]\s*\d',
+            re.I,
+        ),
+    ),
+    'torque_constant_Nm_per_A': OfMachine(
+        words=frozenset(
+            'torqueconstant motortorqueconstant kt drehmomentkonstante momentenkonstante'.split()
+        ),
+        units={'nm/a': 1.0},
+        hint=re.compile(
+            r'(?:torque constant|motor constant|\bkt\b|momente?n?konstante)\D{0,20}\d', re.I
+        ),
+    ),
+    'gear': OfMachine(
+        words=frozenset('gearratio gear getriebeübersetzung übersetzung'.split()),
+        units={'': 1.0, ':': 1.0, ':1': 1.0},
+        hint=re.compile(
+            r'(?:\bgear|getriebe|übersetzung|uebersetzung|transmission ratio|belt ratio)\D*\d',
+            re.I,
+        ),
+    ),
+    'temperature_degC': OfMachine(
+        words=frozenset('oiltemperature öltemperatur oeltemperatur lubricanttemperature'.split()),
+        units={'°c': 1.0, 'degc': 1.0, 'c': 1.0},
+        hint=re.compile(r'(?:\boil|\böl|oel|lubricant|schmier)\w*[ -]?temp\D*\d', re.I),
+    ),
+    'oil': OfMachine(
+        words=frozenset(),
+        units={},
+        hint=re.compile(r'\b(?:oil|öl|oel|lubricant|grease|fett|schmierstoff)\b|\bvg ?\d', re.I),
+    ),
+    'screw': OfMachine(
+        words=frozenset(),
+        units={},
+        hint=re.compile(r'(?:ball|lead)[ -]?screw|kugelgewinde|screw type', re.I),
+    ),
+}
+"""What the head may say of the machine, by the keys of an axis in a map, and its gear."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

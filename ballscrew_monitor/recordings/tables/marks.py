@@ -33,6 +33,12 @@ OF_MOTIONS = frozenset('ccw cw bewegung move movement sense stroke hub phase gea
 WORDS = frozenset[str]().union(*VALID.values(), *BACKWARD.values()) - {'negative', 'return', 'q'}
 STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
+SEVERAL = frozenset(
+    'axis axes achse achsen machine maschine device gerät geraet joint gelenk drive '
+    'antrieb serial slave asset equipment'.split()
+)
+NUMBERED = frozenset('name id no nr number nummer label the'.split())
+"""Words of a column that tells rows of several axes or machines apart, and those beside them."""
 DULL = frozenset('is signal sensor code flag moving motion axis the opc data'.split())
 TRUTHS = {
     **dict.fromkeys('1 true yes ja on'.split(), True),
@@ -176,6 +182,11 @@ def _may_be_ways(cells: Collection[str]) -> bool:
     """Return True if cells are a way or two and rest, or some are words of ways."""
     ways = {cell for cell in cells if cell in WAYS and not cell.isdigit()}
     return 1 < len(cells) <= FEW_WAYS or (bool(ways) and len(cells) <= MOST)
+
+
+def tells_apart(words: Collection[str]) -> bool:
+    """Return True if a column tells by the words of its name of what axis or machine a row is."""
+    return bool(SEVERAL & set(words)) and set(words) <= SEVERAL | NUMBERED
 
 
 def _truth(table: Mapping[bool | None, frozenset[str]], words: Collection[str]) -> bool | None:

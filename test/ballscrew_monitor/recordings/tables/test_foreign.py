@@ -127,6 +127,11 @@ def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
         ({'scale_factor': 0.5, 'add_offset': 2.0, '_FillValue': -9.0}, ''),
         ({'scale': 0.5, 'offset': 0.0}, 'v: scale 0.5'),
         ({'Gain': 1.0, 'zero_offset': 4}, 'v: zero_offset 4'),
+        ({'multiplier': 0.5}, 'v: multiplier 0.5'),
+        ({'conversion': 0.5}, 'v: conversion 0.5'),
+        ({'slope': 0.5}, 'v: slope 0.5'),
+        ({'NI_Scale[0]_Linear_Slope': 0.5}, 'v: NI_Scale[0]_Linear_Slope 0.5'),
+        ({'Scaling Coefficients': [0.0, 2.0]}, 'v: Scaling Coefficients [0. 2.]'),
     ],
 )
 def test_attributes_of_a_dataset_scale_it_by_the_conventions_or_are_named(
@@ -249,3 +254,73 @@ def test_records_beside_those_that_are_read_are_named(tmp_path, says):
     path = tmp_path / 'log.json'
     path.write_text(json.dumps({'run': records, 'other': records}))
     assert foreign.read_signals(path, 'json').left_out == {'other': says('records')}
+
+
+NUMBERS_OF_ONE_PERIOD = [
+    ({'fs': 500.0}, 500.0),
+    ({'dt': STEP}, 500.0),
+    ({'Ts': STEP, 'gain_of_loop': 3.0}, 500.0),
+    ({'inverter': {'frequency': 8000.0}}, None),
+    ({'motion': {'period': 0.5}}, None),
+    ({'fs': 500.0, 'filter': {'fs': 1000.0}}, None),
+    ({'dt': STEP, 'filter': {'period': 0.5}}, None),
+    ({'controller': {'Ts': 0.001}}, None),
+    ({'frequency': 50.0}, None),
+    ({'dt': 2.0}, None),
+    ({'fs': 0.5}, None),
+]
+
+
+def fields_of(content, before=''):
+    """Return the numbers of nested structures with their paths in HDF5."""
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from fields_of(value, f'{before}{key}/')
+        else:
+            yield f'{before}{key}', value
+
+
+@pytest.mark.parametrize('kind', ['mat', 'h5'])
+@pytest.mark.parametrize(('numbers', 'rate'), NUMBERS_OF_ONE_PERIOD)
+def test_a_number_is_the_rate_if_it_is_the_only_one_beside_the_arrays(
+    numbers, rate, kind, tmp_path
+):
+    path = tmp_path / f'log.{kind}'
+    content = {'x_vel_mm_s': SPEED, 'x_force_N': 10.0 * SPEED} | numbers
+    if kind == 'mat':
+        scipy.io.savemat(path, content)
+    else:
+        with h5py.File(path, 'w') as file:
+            for name, value in fields_of(content):
+                file[name] = value
+    result = guess(path)
+    assert result.content['time']['rate_Hz'] == rate
+    names = [name.replace('/', '.') for name, value in fields_of(numbers) if name[:4] != 'gain']
+    assert rate or all(name in ' '.join(result.unstated) for name in names)
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'factors'),
+    [
+        ({'scale': 2.0}, 'scale 2.0'),
+        ({'cal': {'x_vel_mm_s': 2.0}}, 'cal.x_vel_mm_s 2.0'),
+        ({'offset': 3.0, 'gain': 1.0}, 'offset 3.0'),
+        ({'scale': 1.0, 'offset': 0.0, 'mass': 3.0}, ''),
+    ],
+)
+@pytest.mark.parametrize('kind', ['mat', 'json', 'records'])
+def test_numbers_beside_the_signals_that_may_scale_them_are_named(
+    numbers, factors, kind, tmp_path
+):
+    path = tmp_path / f'log.{"mat" if kind == "mat" else "json"}'
+    signals = {'t_s': TIME, 'x_vel_mm_s': SPEED}
+    lists = {name: values.tolist() for name, values in signals.items()}
+    if kind == 'mat':
+        scipy.io.savemat(path, signals | numbers)
+    elif kind == 'json':
+        path.write_text(json.dumps(lists | numbers))
+    else:
+        names = list(lists)
+        rows = [dict(zip(names, row, strict=True)) for row in zip(*lists.values(), strict=True)]
+        path.write_text(json.dumps(numbers | {'samples': rows}))
+    assert foreign.read_signals(path, 'mat' if kind == 'mat' else 'json').factors == factors

@@ -3,6 +3,7 @@
 """The first map of a log: by names, ranges and rates, and honest about what is assumed."""
 
 import datetime as dt
+import math
 
 from ballscrew_monitor.recordings.tables import guess as guess_module
 from ballscrew_monitor.recordings.tables import read as read_module
@@ -17,6 +18,8 @@ TIME = np.arange(200) / 50.0
 SPEED = 100.0 * np.sin(TIME)
 TURNING = 2.0 * np.sin(TIME * 2.0)  # of the screw in a second
 PLACE = 3.0 - np.cos(TIME * 2.0)  # the turns that these are
+
+CONSTANT = 'torque_constant_Nm_per_A'
 
 
 @pytest.fixture
@@ -832,3 +835,137 @@ def test_amounts_that_are_seen_late_are_none_the_less(tmp_path, monkeypatch):
     made.content['axes']['x']['torque'].pop('magnitude')
     series = read_series(log, make_map(made.content)) if made.unstated == () else None
     assert series is None or series.mapping.axes[0].columns['torque'].magnitude
+
+
+def log_below(head, names, path):
+    """Return a log of two rising and falling columns below a head."""
+    rows = ''.join(f'{at / 50};{at % 7 - 3};{at % 5 - 2}\n' for at in range(60))
+    path.write_text(f'{head}\n{names}\n{rows}')
+    return path
+
+
+@pytest.mark.parametrize(
+    ('line', 'names', 'key', 'value'),
+    [
+        ('Lead: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Spindelsteigung: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Steigung [mm];5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Ball screw pitch: 5.0 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('lead_mm: 5.0', 't [s];x velocity [mm/s];x force [N]', 'lead_mm', 5.0),
+        ('Torque constant: 0.8 Nm/A', 't [s];x velocity [mm/s];x current [A]', CONSTANT, 0.8),
+        ('Kt = 0,8 N m/A', 't [s];x velocity [mm/s];x current [A]', CONSTANT, 0.8),
+        (
+            'Oil temperature: 70 °C',
+            't [s];x velocity [mm/s];x force [N]',
+            'temperature_degC',
+            70.0,
+        ),
+    ],
+)
+def test_what_the_head_says_of_the_machine_is_taken_from_it(line, names, key, value, tmp_path):
+    content = guess(log_below(line, names, tmp_path / 'log.csv')).content
+    place = content['assumed'][f'x.{key}']
+    assert place['value'] == value
+    assert line in place['reason']
+
+
+@pytest.mark.parametrize(
+    ('line', 'names', 'key'),
+    [
+        ('# ball screw 32x5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Screw: 32 x 5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Pitch: 5 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Lead: 5', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Lead: 5 mm\nLead: 10 mm', 't [s];x velocity [mm/s];x force [N]', 'lead_mm'),
+        ('Torque constant: 0.8', 't [s];x velocity [mm/s];x current [A]', CONSTANT),
+        ('Gear ratio: 3', 't [s];x motor speed [rpm];x force [N]', 'speed.scale'),
+        ('Gear ratio: 3', 't [s];x velocity [mm/s];x torque [Nm]', 'torque.scale'),
+    ],
+)
+def test_what_the_head_may_say_of_the_machine_is_named_in_a_question(line, names, key, tmp_path):
+    result = guess(log_below(line, names, tmp_path / 'log.csv'))
+    (asked,) = [why for why in result.unstated if f'axes.x.{key}' in why]
+    assert all(part in asked for part in line.split('\n'))
+
+
+def test_a_lead_in_the_head_that_position_and_speed_contradict_is_asked_for(tmp_path):
+    moved = np.cumsum(200.0 * np.sin(np.arange(400) / 9) / 50.0)
+    rows = ''.join(
+        f'{at / 50};{moved[at] / 10.0 * 360.0};{200.0 * math.sin(at / 9)}\n' for at in range(400)
+    )
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Lead: 5 mm\nt [s];x position [deg];x velocity [mm/s]\n{rows}')
+    result = guess(log)
+    assert result.content['axes']['x']['lead_mm'] is None
+    assert any('Lead: 5 mm' in why and '10' in why for why in result.unstated)
+
+
+def test_an_oil_of_the_head_is_named_beside_the_one_that_is_taken(tmp_path):
+    names = 't [s];x velocity [mm/s];x force [N]'
+    content = guess(log_below('Oil: ISO VG 220', names, tmp_path / 'log.csv')).content
+    assert 'Oil: ISO VG 220' in content['assumed']['x.oil']['reason']
+
+
+@pytest.mark.parametrize('in_turn', [True, False])
+@pytest.mark.parametrize(
+    ('column', 'cells'),
+    [
+        ('axis', 'XY'),
+        ('Achse', '12'),
+        ('device', 'AB'),
+        ('Serial', '57'),
+        ('Machine', ('M1', 'M2')),
+    ],
+)
+def test_rows_of_several_axes_or_machines_are_refused(column, cells, in_turn, tmp_path, refused):
+    rows = [(at / 50, cell, at % 7 - 3) for at in range(60) for cell in cells]
+    rows = rows if in_turn else sorted(rows, key=lambda row: row[1])
+    text = ''.join(f'{time};{cell};{speed}\n' for time, cell, speed in rows)
+    log = tmp_path / 'log.csv'
+    log.write_text(f't [s];{column};velocity [mm/s]\n{text}')
+    with refused('several', column=repr(column), cells=', '.join(cells)):
+        guess(log)
+
+
+def test_a_column_of_one_axis_alone_refuses_nothing(tmp_path):
+    rows = ''.join(f'{at / 50};X;{at % 7 - 3}\n' for at in range(60))
+    log = tmp_path / 'log.csv'
+    log.write_text(f't [s];axis;velocity [mm/s]\n{rows}')
+    assert guess(log).content['axes']
+
+
+@pytest.mark.parametrize('part', ['ms', 'Millisecond'])
+@pytest.mark.parametrize(('rows', 'asked'), [(50, True), (100, False)])
+def test_whole_seconds_with_their_parts_apart_are_no_time_where_rows_miss(
+    part, rows, asked, tmp_path
+):
+    text = ''.join(
+        f'12:00:{second:02d};{10 * row};{100.0 + second + row / 100}\n'
+        for second in range(12)
+        for row in range(rows)
+    )
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Time;{part};x position [mm]\n{text}')
+    result = guess(log)
+    time = result.content['time']
+    assert time.get('column') == (None if asked else 'Time')
+    assert any(repr(part) in why for why in result.unstated) is asked
+
+
+@pytest.mark.parametrize('mark', [-9999.0, 999.9, 32767.0, 655.35, 327.67])
+@pytest.mark.parametrize('place', ['x_velocity_mm_s', 'x_force_N'])
+def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tmp_path, refused):
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.8 * SPEED}
+    held = columns[place].copy()
+    held[50:54] = mark
+    log = write_csv(tmp_path / 'log.csv', columns | {place: held}, form='{:.7g}')
+    with refused('mark_of_none', column=repr(place), mark=f'{mark:g}', count='4'):
+        guess(log)
+
+
+@pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])
+def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_csv, tmp_path):
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.3 * SPEED}
+    columns['x_force_N'][50 : 50 + count] = mark
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    assert guess(log).content['axes']['x']['load']

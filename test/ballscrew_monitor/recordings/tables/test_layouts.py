@@ -330,3 +330,65 @@ def test_a_period_is_that_of_rows_with_its_unit_or_none(line, period, tmp_path):
     rows = ''.join(f'{at % 7 - 3};{at % 5 - 2}\n' for at in range(40))
     log.write_text(f'{line}\nx velocity [mm/s];x force [N]\n{rows}')
     assert source_of(log).head.period == pytest.approx(period, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    'line',
+    [
+        'Cycle time: 12 s',
+        'PLC cycle time: 2 ms',
+        '# Servo cycle 125 us',
+        'Frequency: 50 Hz',
+        'Period: 12 s',
+        'Interval: 60 s',
+        'Period (ms);10',
+        '# Rate: 100',
+        '# Frequency = 100',
+        'Sample time: 12 s',
+        '# Sample duration: 12 s',
+        '# Sampled 12 s, 100 Hz',
+        '# Sampling jitter 20 us',
+        '# Sample rate (original) 1 kHz',
+        'Sample rate before averaging: 1 kHz',
+        '# resampled from 1 kHz',
+        '# cycle 1 ms, logged each 10th',
+        '# Drive sampling time 125 us',
+        '# Schrittmotor 5 s',
+        'Sample time: 1 ms\nDecimation: 10',
+        'Sample rate: 1 kHz\nDownsampling: 10',
+        'Sample time: 1 ms\nRecord every: 10',
+        'Abtastzeit: 1 ms\nUntersetzung: 10',
+        'Averaging: 10 samples\nSample rate: 1000 Hz',
+        'Sample rate: 100 Hz\nSample time: 1 ms',
+    ],
+)
+def test_a_period_that_may_be_of_something_else_is_named_in_a_question(line, tmp_path):
+    log = tmp_path / 'log.csv'
+    rows = ''.join(f'{at % 7 - 3};{at % 5 - 2}\n' for at in range(40))
+    log.write_text(f'{line}\nx velocity [mm/s];x force [N]\n{rows}')
+    result = guess(log)
+    assert result.content['time']['rate_Hz'] is None
+    assert all(part in ' '.join(result.unstated) for part in line.split('\n'))
+
+
+@pytest.mark.parametrize(
+    'line',
+    [
+        'Sample rate;100;Hz',
+        'Abtastrate;100,0;Hz',
+        'Sample interval;0,01;s',
+        'Logging interval: 10 ms',
+        'Log rate: 100 Hz',
+        'Scan rate: 100 Hz',
+        'Acquisition rate: 100 Hz',
+        'Ts = 10 ms',
+        'fs = 100',
+        '# mill 3, sampling rate 100 Hz, table',
+        '"Sampling cycle 10 msec"',
+    ],
+)
+def test_a_period_in_plain_words_of_rows_is_read(line, tmp_path):
+    log = tmp_path / 'log.csv'
+    rows = ''.join(f'{at % 7 - 3};{at % 5 - 2};{20 + at % 3}\n' for at in range(40))
+    log.write_text(f'{line}\nx velocity [mm/s];x force [N];oil temperature [degC]\n{rows}')
+    assert guess(log).content['time']['rate_Hz'] == 100.0
