@@ -20,8 +20,9 @@ import json
 import os
 from pathlib import Path
 import platform
+import stat
 import tempfile
-from typing import Any
+from typing import Any, BinaryIO
 import zipfile
 
 from ballscrew_monitor.clients.mask import Mask, Secret
@@ -86,10 +87,10 @@ class FaultCase:
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
     """Return the zip, and what it holds in lines; raises InputError for what cannot be read."""
     parts = _Parts(case)
-    failures = own_failures() if case.failures is None else case.failures
+    failures = own_failures() if case.failures is None else map(_text_of, case.failures)
     parts.add_text('versions.json', json_text(versions()))
-    for number, path in enumerate(failures, 1):
-        parts.add_text(f'failure_{number}.txt', _text_of(path))
+    for number, text in enumerate(failures, 1):
+        parts.add_text(f'failure_{number}.txt', text)
     for path in case.paths:
         if is_state(path):
             parts.add_state(path)
@@ -109,14 +110,27 @@ def is_state(path: Path) -> bool:
     return (path / FILE).is_file()
 
 
-def own_failures() -> list[Path]:
+def own_failures() -> list[str]:
     """Return the last failures of commands that this user has run, the newest first."""
-    files = [
-        (path.stat().st_mtime, path)
-        for path in Path(tempfile.gettempdir()).glob(FAILURES)
-        if path.is_file() and path.stat().st_uid == os.getuid()
-    ]
-    return [path for _, path in sorted(files, reverse=True)[:MOST_FAILURES]]
+    files = filter(None, map(_own_failure, Path(tempfile.gettempdir()).glob(FAILURES)))
+    return [text for _, text in sorted(files, reverse=True)[:MOST_FAILURES]]
+
+
+def _own_failure(path: Path) -> tuple[float, str] | None:
+    """Return when a file of this user was written [s] and its text; None for any other, a link."""
+    try:
+        with open(path, 'rb', opener=_open_no_link) as stream:
+            about = os.fstat(stream.fileno())
+            is_file = stat.S_ISREG(about.st_mode) and about.st_nlink == 1
+            if is_file and about.st_uid == os.getuid():
+                return about.st_mtime, _end_of(stream)
+    except OSError:
+        pass  # it is another user's
+    return None
+
+
+def _open_no_link(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
 
 
 def versions() -> dict[str, Any]:
@@ -339,9 +353,15 @@ def _files_in(folder: str) -> list[Path]:
     return sorted(path for path in Path(folder).iterdir() if path.is_file())
 
 
+def _end_of(stream: BinaryIO) -> str:
+    stream.seek(max(0, stream.seek(0, os.SEEK_END) - LARGEST_TEXT))
+    return stream.read(LARGEST_TEXT).decode('utf-8', 'replace')
+
+
 def _text_of(path: Path) -> str:
     try:
-        return path.read_bytes()[-LARGEST_TEXT:].decode('utf-8', 'replace')
+        with path.open('rb') as stream:
+            return _end_of(stream)
     except OSError as error:
         raise InputError(f'{path} cannot be read: {error.strerror}') from None
 

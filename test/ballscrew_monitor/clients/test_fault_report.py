@@ -4,6 +4,7 @@
 
 import io
 import json
+import os
 import zipfile
 
 from ballscrew_monitor import cli
@@ -242,3 +243,13 @@ def test_a_table_in_letters_of_two_bytes_is_read(machine, tmp_path):
     content, _ = fault_report(FaultCase(paths=[table], failures=[]))
     files, _ = unpacked(content, tmp_path / 'there')
     assert files['log_wide.csv'].decode().endswith('at HOST\ntime_s,speed\n0,1\n')
+
+
+def test_only_files_of_this_user_are_taken_for_failures(machine, tmp_path, failure):
+    key = tmp_path / 'id_ed25519'
+    key.write_text('PRIVATE KEY')
+    (tmp_path / 'ballscrew_failure_2.txt').symlink_to(key)
+    (tmp_path / 'ballscrew_failure_3.txt').hardlink_to(key)
+    (tmp_path / 'ballscrew_failure_4.txt').mkdir()
+    os.mkfifo(tmp_path / 'ballscrew_failure_5.txt')
+    assert reports.own_failures() == [failure.read_text()]
