@@ -25,7 +25,7 @@ import tempfile
 from typing import Any, BinaryIO
 import zipfile
 
-from ballscrew_monitor.clients.mask import Mask, Secret
+from ballscrew_monitor.clients.mask import holds_bytes, Mask, Secret
 from ballscrew_monitor.messages.diagnostics import HOST as HOST_KEY
 from ballscrew_monitor.node.restart_state import AUTO, state_directory
 from ballscrew_monitor.node.state_database import FILE, VERSION
@@ -199,7 +199,7 @@ class _Parts:
     def add_bag(self, path: Path) -> None:
         """Add the end of a bag, and the parameters that it holds."""
         bag, size, kept = Bag(path, salvage=True), 0, deque[Message]()
-        for message in bag.messages():
+        for message in bag.messages(self._topics_of(bag)):
             kept.append(message)
             size += len(message.data)
             first = message.log_time - self._case.seconds * 1e9
@@ -212,6 +212,20 @@ class _Parts:
         if parameters:
             self.add_text('parameters.json', json_text(parameters))
         self._remarks += bag.notes
+
+    def _topics_of(self, bag: Bag) -> list[str]:
+        """Return the topics of a bag in which secrets can be hidden; remark on all others."""
+        topics = []
+        for topic, kind in bag.types.items():
+            try:
+                why = 'holds bytes, in which nothing can be hidden' if holds_bytes(kind) else ''
+            except InputError:
+                why = 'is not installed here'
+            if why:
+                self._remarks.append(f'{topic} is left out: its type {kind} {why}')
+            else:
+                topics.append(topic)
+        return topics
 
     def _learn_from(self, type_name: str, data: bytes) -> dict[str, Any]:
         """Learn who is named in a message; return the parameters that it holds."""
@@ -289,28 +303,18 @@ class _Parts:
     def _masked_bag(
         self, name: str, bag: Bag, messages: Sequence[Message]
     ) -> list[tuple[str, bytes]]:
-        """Return the files of a bag of messages; those of types that are not known stay out."""
+        """Return the files of a bag of messages."""
         topics = {message.topic: self._mask.text(message.topic) for message in messages}
-        left_out: set[str] = set()
         with tempfile.TemporaryDirectory() as folder, BagWriter(Path(folder), name) as writer:
             for topic, shown in topics.items():
-                try:
-                    kind = bag.types[topic]
-                    writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
-                except InputError:
-                    left_out.add(topic)
+                kind = bag.types[topic]
+                writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
             for message in messages:
-                if message.topic not in left_out:
-                    data = self._mask.message(bag.types[message.topic], message.data)
-                    times = {'log_time': message.log_time, 'publish_time': message.publish_time}
-                    writer.write(topics[message.topic], data, **times)
+                data = self._mask.message(bag.types[message.topic], message.data)
+                times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+                writer.write(topics[message.topic], data, **times)
             writer.close()
-            files = [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
-        self._remarks += [
-            f'{topics[topic]} is left out: its type {bag.types[topic]} is not installed here'
-            for topic in sorted(left_out)
-        ]
-        return files
+            return [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
 
     def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:
         hidden = self._mask.count

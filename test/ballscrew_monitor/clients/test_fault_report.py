@@ -24,7 +24,7 @@ from ballscrew_msgs.msg import OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import numpy as np
 import pytest
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import CompressedImage, JointState, MultiEchoLaserScan
 from std_msgs.msg import Header
 
 HOST, USER, HOME = 'cell7-hmi', 'mgruber', '/srv/people/mgruber'
@@ -253,3 +253,31 @@ def test_only_files_of_this_user_are_taken_for_failures(machine, tmp_path, failu
     (tmp_path / 'ballscrew_failure_4.txt').mkdir()
     os.mkfifo(tmp_path / 'ballscrew_failure_5.txt')
     assert reports.own_failures() == [failure.read_text()]
+
+
+def test_a_long_run_of_letters_is_masked_in_its_length(machine):
+    letters = 'a' * 1_000_000  # each letter of which may begin an address
+    text = f'{letters}\nfrom {"a" * 64}@{"b" * 63}.{"c" * 63}.org'
+    assert Mask().text(text) == f'{letters}\nfrom NAME'
+
+
+def test_a_name_of_several_lines_is_hidden(machine):
+    mask = Mask()
+    mask.learn(Secret.NAME, ['seen by\nHuber'])
+    assert mask.text('seen by\nHuber, "seen by\\nHuber", Huber') == 'NAME\nNAME, "NAME", NAME'
+
+
+def test_what_holds_bytes_or_is_of_no_known_type_stays_out_of_a_bag(machine, tmp_path):
+    bag = tmp_path / 'bag'
+    with BagWriter(bag, bag.name) as writer:
+        for message in (JointState(), CompressedImage(data=b'face'), MultiEchoLaserScan()):
+            kind = f'sensor_msgs/msg/{type(message).__name__}'
+            topic = f'/{type(message).__name__}'
+            writer.add_topic(Topic(name=topic, type_name=kind, offer=Offer.RELIABLE))
+            writer.write(topic, serialized(message), log_time=SECOND, publish_time=SECOND)
+    content, lines = fault_report(FaultCase(paths=[bag], failures=[]))
+    _, heard = unpacked(content, tmp_path / 'there')
+    assert heard.keys() == {'/JointState', '/MultiEchoLaserScan'}
+    assert any(line.startswith('/CompressedImage is left out') for line in lines)
+    assert masks.holds_bytes('std_msgs/msg/UInt8MultiArray')
+    assert not masks.holds_bytes('ballscrew_msgs/msg/JudgeEvents')
