@@ -11,7 +11,7 @@ hosts, users and persons; `contents.txt` says what is inside and what was hidden
 
 import argparse
 from collections import deque
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 import contextlib
 import dataclasses
 from importlib import metadata
@@ -85,7 +85,12 @@ class FaultCase:
 
 
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
-    """Return the zip, and what it holds in lines; raises InputError for what cannot be read."""
+    """
+    Return the zip, and what it holds in lines, and what stood in the way of other parts.
+
+    Raises InputError for a table or a failure that is asked for and cannot be read.
+
+    """
     parts = _Parts(case)
     failures = own_failures() if case.failures is None else map(_text_of, case.failures)
     parts.add_text('versions.json', json_text(versions()))
@@ -93,13 +98,16 @@ def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
         parts.add_text(f'failure_{number}.txt', text)
     for path in case.paths:
         if is_state(path):
-            parts.add_state(path)
-        elif path.is_dir() and not is_bag(path):
-            parts.add_last(path)
+            parts.attempt(parts.add_state, path)
+            parts.attempt(parts.add_last, path / 'recordings')
         elif is_bag(path):
-            parts.add_bag(path)
-        else:
+            parts.attempt(parts.add_bag, path)
+        elif path.is_dir():
+            parts.attempt(parts.add_last, path)
+        elif case.table_refused:
             parts.add_table(path)
+        else:
+            parts.attempt(parts.add_table, path)
     for name, text in case.texts.items():
         parts.add_text(name, text)
     return parts.packed()
@@ -158,12 +166,21 @@ class _Parts:
         self._remarks: list[str] = []
         self._room = LARGEST_LOGS / max(len(case.paths), 1)  # [byte] for each log
 
+    def attempt(self, add: Callable[[Path], None], path: Path) -> None:
+        """Add a part; what stands in its way becomes a remark, so that all others are sent."""
+        try:
+            add(path)
+        except InputError as error:
+            self._remarks.append(str(error))
+        except Exception as error:
+            self._remarks.append(f'{path} is left out: {type(error).__name__}: {error}')
+
     def add_text(self, name: str, text: str) -> None:
         """Add a text, of a long one its end."""
         self._texts.append((name, text[-LARGEST_TEXT:]))
 
     def add_state(self, folder: Path) -> None:
-        """Add what a node keeps, and its last recording."""
+        """Add what a node keeps."""
         tables = (AXES, CORRECTIONS, EVENTS)
         with opened_to_read(folder, FILE, tables, VERSION) as store:
             last = f'ORDER BY number DESC LIMIT {MOST_ENTRIES}'
@@ -183,18 +200,13 @@ class _Parts:
             json_text({name: [*map(dataclasses.asdict, each)] for name, each in kept.items()}),
         )
         self.add_text('events.jsonl', '\n'.join(map(json.dumps, entries)))
-        self.add_last(folder / 'recordings')
 
     def add_last(self, folder: Path) -> None:
         """Add the last recording of a folder, if there is one."""
         bags = sorted(filter(is_bag, folder.glob('*/')), key=lambda path: path.stat().st_mtime)
         if not bags:
-            self._remarks.append(NO_RECORDING)
-            return
-        try:
-            self.add_bag(bags[-1])
-        except InputError as error:  # such as one that has just begun
-            self._remarks.append(str(error))
+            raise InputError(NO_RECORDING)
+        self.add_bag(bags[-1])
 
     def add_bag(self, path: Path) -> None:
         """Add the end of a bag, and the parameters that it holds."""
@@ -206,12 +218,16 @@ class _Parts:
             while kept and (size > self._room or kept[0].log_time < first):
                 size -= len(kept.popleft().data)
         parameters: dict[str, Any] = {}
+        sound = []
         for message in kept:
-            parameters |= self._learn_from(bag.types[message.topic], message.data)
-        self._bags.append((f'log_{len(self._bags) + 1}', bag, list(kept)))
+            try:
+                parameters |= self._learn_from(bag.types[message.topic], message.data)
+                sound.append(message)
+            except Exception as error:  # as of an older interface
+                bag.refuse(message, str(error))
+        self._bags.append((f'log_{len(self._bags) + 1}', bag, sound))
         if parameters:
             self.add_text('parameters.json', json_text(parameters))
-        self._remarks += bag.notes
 
     def _topics_of(self, bag: Bag) -> list[str]:
         """Return the topics of a bag in which secrets can be hidden; remark on all others."""
@@ -253,10 +269,8 @@ class _Parts:
         elif self._case.tables:
             size = path.stat().st_size
             raise InputError(f'{path} has {size} bytes, allowed are {self._room:.0f}')
-        elif self._case.table_refused:
-            raise InputError(BINARY.format(name=path))
         else:
-            self._remarks.append(BINARY.format(name=path.name))
+            raise InputError(BINARY.format(name=path))
 
     def _ends_of(self, path: Path) -> tuple[bytes, bytes]:
         """Return a file in whole, with nothing after it, or what it begins and ends with."""
@@ -310,10 +324,15 @@ class _Parts:
                 kind = bag.types[topic]
                 writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
             for message in messages:
-                data = self._mask.message(bag.types[message.topic], message.data)
+                try:
+                    data = self._mask.message(bag.types[message.topic], message.data)
+                except Exception as error:
+                    bag.refuse(message, str(error))
+                    continue
                 times = {'log_time': message.log_time, 'publish_time': message.publish_time}
                 writer.write(topics[message.topic], data, **times)
             writer.close()
+            self._remarks += bag.notes
             return [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
 
     def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:

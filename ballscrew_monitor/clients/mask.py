@@ -100,9 +100,9 @@ class Mask:
 
     def message(self, type_name: str, data: bytes) -> bytes:
         """Return a serialised message without secrets; raises InputError for an unknown type."""
+        message = deserialize_message(data, message_class(type_name))
         if not self._pattern.search(data.decode('utf-8', 'replace')):
             return data
-        message = deserialize_message(data, message_class(type_name))
         return serialized(self._of_message(message))
 
     def _of_message(self, message: Any) -> Any:

@@ -25,7 +25,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import numpy as np
 import pytest
 from sensor_msgs.msg import CompressedImage, JointState, MultiEchoLaserScan
-from std_msgs.msg import Header
+from std_msgs.msg import Header, String
 
 HOST, USER, HOME = 'cell7-hmi', 'mgruber', '/srv/people/mgruber'
 PERSON, REASON, OTHER, TOKEN = 'Jörg Huber', 'seen by J.H.', 'cell8-hmi', 'correct-horse-battery'
@@ -281,3 +281,36 @@ def test_what_holds_bytes_or_is_of_no_known_type_stays_out_of_a_bag(machine, tmp
     assert any(line.startswith('/CompressedImage is left out') for line in lines)
     assert masks.holds_bytes('std_msgs/msg/UInt8MultiArray')
     assert not masks.holds_bytes('ballscrew_msgs/msg/JudgeEvents')
+
+
+def test_a_damaged_part_leaves_all_others(machine, state_dir, table, tmp_path):
+    (state_dir / 'state.sqlite3').write_bytes(b'damaged')
+    empty = tmp_path / 'empty'
+    empty.mkdir()
+    (empty / 'metadata.yaml').write_text('?')
+    content, lines = fault_report(FaultCase(paths=[state_dir, empty, table], failures=[]))
+    files, heard = unpacked(content, tmp_path / 'there')
+    assert leaks(files, heard) == set()
+    assert {'parameters.json', 'log_USER.csv'} <= files.keys()
+    assert len(heard) == len(TOPICS)
+    assert any('state.sqlite3' in line for line in lines)
+    assert any('metadata.yaml' in line or '/empty' in line for line in lines)
+
+
+def test_a_message_that_does_not_decode_stays_out(machine, tmp_path):
+    bag = tmp_path / 'bag'
+    names = {**TOPICS, '/note': 'std_msgs/msg/String'}
+    with BagWriter(bag, bag.name) as writer:
+        for name, kind in names.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
+        messages = *messages_at(1), serialized(String(data=HOST))
+        for name, data in zip(names, messages, strict=True):
+            writer.write(name, data, log_time=SECOND, publish_time=SECOND)
+            # Its text ends before its length says so; and it names somebody.
+            short = b'\0\1\0\0\xff\xff\0\0' + PERSON.encode() + HOST.encode()
+            writer.write(name, short, log_time=SECOND, publish_time=SECOND)
+    content, lines = fault_report(FaultCase(paths=[bag], failures=[]))
+    files, heard = unpacked(content, tmp_path / 'there')
+    assert leaks(files, heard) == set()
+    assert [len(each) for each in heard.values()] == [1] * len(names)
+    assert sum('does not decode' in line for line in lines) == len(names)
