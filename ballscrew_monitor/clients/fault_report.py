@@ -25,7 +25,7 @@ import tempfile
 from typing import Any, BinaryIO
 import zipfile
 
-from ballscrew_monitor.clients.mask import holds_bytes, Mask, Secret
+from ballscrew_monitor.clients.mask import holds_bytes, Mask, Secret, with_short
 from ballscrew_monitor.messages.diagnostics import HOST as HOST_KEY
 from ballscrew_monitor.node.restart_state import AUTO, state_directory
 from ballscrew_monitor.node.state_database import FILE, VERSION
@@ -358,7 +358,8 @@ def _named_in(message: Any) -> dict[Secret, list[str]]:
     """Return what a message names: persons and their reasons, or machines."""
     if isinstance(message, DiagnosticArray):
         pairs = [pair for status in message.status for pair in status.values]
-        return {Secret.HOST: [pair.value for pair in pairs if pair.key == HOST_KEY]}
+        hosts = [pair.value.partition(' (process ')[0] for pair in pairs if pair.key == HOST_KEY]
+        return {Secret.HOST: [name for host in hosts for name in with_short(host)]}
     names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason')
     return {Secret.NAME: [getattr(message, name, '') for name in names]}
 

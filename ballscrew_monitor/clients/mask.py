@@ -134,8 +134,13 @@ def holds_bytes(type_name: str) -> bool:
 
 def host_names() -> set[str]:
     """Return the names of this machine, with and without its domain."""
-    name = socket.gethostname()
-    return {name, name.partition('.')[0]}
+    return with_short(socket.gethostname())
+
+
+def with_short(host: str) -> set[str]:
+    """Return the name of a host, with and without its domain; an address stays whole."""
+    short = host.partition('.')[0]
+    return {host} if short.isdigit() else {host, short}
 
 
 def user_names() -> set[str]:

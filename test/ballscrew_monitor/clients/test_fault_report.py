@@ -15,6 +15,7 @@ from ballscrew_monitor.clients.mask import Mask, Secret
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.judge.records import EVENT
+from ballscrew_monitor.node import heartbeat
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, Kind
 from ballscrew_monitor.recordings.bag import Bag
@@ -49,6 +50,13 @@ def machine(monkeypatch, tmp_path):
     monkeypatch.setattr(reports.tempfile, 'tempdir', str(tmp_path))
 
 
+def instance_of(host):
+    """Return what a node on a host says of itself."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(heartbeat.socket, 'gethostname', lambda: host)
+        return heartbeat.own_instance().value
+
+
 def messages_at(second):
     """Return a message of each topic, all of which name somebody."""
     snapshot = {
@@ -56,7 +64,7 @@ def messages_at(second):
         'values': {'x.surface': f'{HOME}/surface.npz', 'x.speed.topic': '/joint_states'},
         'memory': {'shelve_reason': REASON, 'ending': ['ACKNOWLEDGED', PERSON, '']},
     }
-    pairs = [KeyValue(key='Host', value=OTHER)]
+    pairs = [KeyValue(key='Host', value=instance_of(f'{OTHER}.plant.local'))]
     status = DiagnosticStatus(name='node', message=f'it runs on {OTHER}', values=pairs)
     return (
         serialized(JointState(header=Header(frame_id=f'{HOST}/base'), velocity=[float(second)])),
@@ -314,3 +322,8 @@ def test_a_message_that_does_not_decode_stays_out(machine, tmp_path):
     assert leaks(files, heard) == set()
     assert [len(each) for each in heard.values()] == [1] * len(names)
     assert sum('does not decode' in line for line in lines) == len(names)
+
+
+def test_an_address_of_a_host_is_learned_in_whole():
+    assert masks.with_short('10.1.2.3') == {'10.1.2.3'}
+    assert masks.with_short('cell7.plant.local') == {'cell7.plant.local', 'cell7'}
