@@ -37,7 +37,7 @@ from ballscrew_monitor.recordings.event_messages import read as read_events
 from ballscrew_monitor.recordings.frames import EVENTS as EVENTS_TYPE
 from ballscrew_monitor.recordings.storages import Message
 from ballscrew_monitor.settings.parameters import NODE_NAME
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError, json_text, printable, replace_file
@@ -349,6 +349,7 @@ class _Parts:
 NAMING = {
     'ballscrew_msgs/msg/OutOfZone': OutOfZone,
     'ballscrew_msgs/msg/BallScrewState': BallScrewState,
+    'ballscrew_msgs/msg/AxisHealth': AxisHealth,
     'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
 }
 """Messages that name persons or machines."""
@@ -360,7 +361,7 @@ def _named_in(message: Any) -> dict[Secret, list[str]]:
         pairs = [pair for status in message.status for pair in status.values]
         hosts = [pair.value.partition(' (process ')[0] for pair in pairs if pair.key == HOST_KEY]
         return {Secret.HOST: [name for host in hosts for name in with_short(host)]}
-    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason')
+    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason', 'baseline_reason')
     return {Secret.NAME: [getattr(message, name, '') for name in names]}
 
 

@@ -21,7 +21,7 @@ from ballscrew_monitor.node.state_records import entry_of, Kind
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.event_messages import packed, read
-from ballscrew_msgs.msg import OutOfZone
+from ballscrew_msgs.msg import AxisHealth, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import numpy as np
 import pytest
@@ -31,10 +31,23 @@ from std_msgs.msg import Header, String
 HOST, USER, HOME = 'cell7-hmi', 'mgruber', '/srv/people/mgruber'
 PERSON, REASON, OTHER, TOKEN = 'Jörg Huber', 'seen by J.H.', 'cell8-hmi', 'correct-horse-battery'
 APPRENTICE = 'apprentice'  # another user, whose home is named
-SECRETS = (HOST, USER, HOME, PERSON, json.dumps(PERSON)[1:-1], REASON, OTHER, TOKEN, APPRENTICE)
+CHANGE = 'nut changed by Huber'
+SECRETS = (
+    CHANGE,
+    HOST,
+    USER,
+    HOME,
+    PERSON,
+    json.dumps(PERSON)[1:-1],
+    REASON,
+    OTHER,
+    TOKEN,
+    APPRENTICE,
+)
 TOPICS = {
     f'/{HOST.replace("-", "_")}/joint_states': 'sensor_msgs/msg/JointState',
     '/monitor/x/out_of_zone': 'ballscrew_msgs/msg/OutOfZone',
+    '/monitor/x/health': 'ballscrew_msgs/msg/AxisHealth',
     '/diagnostics': 'diagnostic_msgs/msg/DiagnosticArray',
     '/monitor/judge_events': 'ballscrew_msgs/msg/JudgeEvents',
 }
@@ -69,6 +82,7 @@ def messages_at(second):
     return (
         serialized(JointState(header=Header(frame_id=f'{HOST}/base'), velocity=[float(second)])),
         serialized(OutOfZone(axis='x', event_id=3, acknowledged_by=PERSON)),
+        serialized(AxisHealth(baseline_reason=CHANGE)),
         serialized(DiagnosticArray(status=[status])),
         packed(second, np.zeros(0, EVENT), {}, [json.dumps(snapshot)]),
     )
@@ -158,7 +172,7 @@ def test_no_secret_leaves_the_machine(machine, state_dir, table, failure, tmp_pa
     [
         (Secret.HOST, {HOST, OTHER}),
         (Secret.USER, {USER, HOME, APPRENTICE}),
-        (Secret.NAME, {PERSON, json.dumps(PERSON)[1:-1], REASON}),
+        (Secret.NAME, {PERSON, json.dumps(PERSON)[1:-1], REASON, CHANGE}),
         (Secret.TOKEN, set()),
     ],
 )
