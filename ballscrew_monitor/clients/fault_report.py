@@ -11,7 +11,7 @@ hosts, users and persons; `contents.txt` says what is inside and what was hidden
 
 import argparse
 from collections import deque
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 import contextlib
 import dataclasses
 from importlib import metadata
@@ -20,11 +20,12 @@ import json
 import os
 from pathlib import Path
 import platform
+import stat
 import tempfile
-from typing import Any
+from typing import Any, BinaryIO
 import zipfile
 
-from ballscrew_monitor.clients.mask import Mask, Secret
+from ballscrew_monitor.clients.mask import holds_bytes, Mask, Secret, with_short
 from ballscrew_monitor.messages.diagnostics import HOST as HOST_KEY
 from ballscrew_monitor.node.restart_state import AUTO, state_directory
 from ballscrew_monitor.node.state_database import FILE, VERSION
@@ -36,7 +37,7 @@ from ballscrew_monitor.recordings.event_messages import read as read_events
 from ballscrew_monitor.recordings.frames import EVENTS as EVENTS_TYPE
 from ballscrew_monitor.recordings.storages import Message
 from ballscrew_monitor.settings.parameters import NODE_NAME
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError, json_text, printable, replace_file
@@ -84,21 +85,29 @@ class FaultCase:
 
 
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
-    """Return the zip, and what it holds in lines; raises InputError for what cannot be read."""
+    """
+    Return the zip, and what it holds in lines, and what stood in the way of other parts.
+
+    Raises InputError for a table or a failure that is asked for and cannot be read.
+
+    """
     parts = _Parts(case)
-    failures = own_failures() if case.failures is None else case.failures
+    failures = own_failures() if case.failures is None else map(_text_of, case.failures)
     parts.add_text('versions.json', json_text(versions()))
-    for number, path in enumerate(failures, 1):
-        parts.add_text(f'failure_{number}.txt', _text_of(path))
+    for number, text in enumerate(failures, 1):
+        parts.add_text(f'failure_{number}.txt', text)
     for path in case.paths:
         if is_state(path):
-            parts.add_state(path)
-        elif path.is_dir() and not is_bag(path):
-            parts.add_last(path)
+            parts.attempt(parts.add_state, path)
+            parts.attempt(parts.add_last, path / 'recordings')
         elif is_bag(path):
-            parts.add_bag(path)
-        else:
+            parts.attempt(parts.add_bag, path)
+        elif path.is_dir():
+            parts.attempt(parts.add_last, path)
+        elif case.table_refused:
             parts.add_table(path)
+        else:
+            parts.attempt(parts.add_table, path)
     for name, text in case.texts.items():
         parts.add_text(name, text)
     return parts.packed()
@@ -109,14 +118,27 @@ def is_state(path: Path) -> bool:
     return (path / FILE).is_file()
 
 
-def own_failures() -> list[Path]:
+def own_failures() -> list[str]:
     """Return the last failures of commands that this user has run, the newest first."""
-    files = [
-        (path.stat().st_mtime, path)
-        for path in Path(tempfile.gettempdir()).glob(FAILURES)
-        if path.is_file() and path.stat().st_uid == os.getuid()
-    ]
-    return [path for _, path in sorted(files, reverse=True)[:MOST_FAILURES]]
+    files = filter(None, map(_own_failure, Path(tempfile.gettempdir()).glob(FAILURES)))
+    return [text for _, text in sorted(files, reverse=True)[:MOST_FAILURES]]
+
+
+def _own_failure(path: Path) -> tuple[float, str] | None:
+    """Return when a file of this user was written [s] and its text; None for any other, a link."""
+    try:
+        with open(path, 'rb', opener=_open_no_link) as stream:
+            about = os.fstat(stream.fileno())
+            is_file = stat.S_ISREG(about.st_mode) and about.st_nlink == 1
+            if is_file and about.st_uid == os.getuid():
+                return about.st_mtime, _end_of(stream)
+    except OSError:
+        pass  # it is another user's
+    return None
+
+
+def _open_no_link(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
 
 
 def versions() -> dict[str, Any]:
@@ -144,12 +166,21 @@ class _Parts:
         self._remarks: list[str] = []
         self._room = LARGEST_LOGS / max(len(case.paths), 1)  # [byte] for each log
 
+    def attempt(self, add: Callable[[Path], None], path: Path) -> None:
+        """Add a part; what stands in its way becomes a remark, so that all others are sent."""
+        try:
+            add(path)
+        except InputError as error:
+            self._remarks.append(str(error))
+        except Exception as error:
+            self._remarks.append(f'{path} is left out: {type(error).__name__}: {error}')
+
     def add_text(self, name: str, text: str) -> None:
         """Add a text, of a long one its end."""
         self._texts.append((name, text[-LARGEST_TEXT:]))
 
     def add_state(self, folder: Path) -> None:
-        """Add what a node keeps, and its last recording."""
+        """Add what a node keeps."""
         tables = (AXES, CORRECTIONS, EVENTS)
         with opened_to_read(folder, FILE, tables, VERSION) as store:
             last = f'ORDER BY number DESC LIMIT {MOST_ENTRIES}'
@@ -169,35 +200,48 @@ class _Parts:
             json_text({name: [*map(dataclasses.asdict, each)] for name, each in kept.items()}),
         )
         self.add_text('events.jsonl', '\n'.join(map(json.dumps, entries)))
-        self.add_last(folder / 'recordings')
 
     def add_last(self, folder: Path) -> None:
         """Add the last recording of a folder, if there is one."""
         bags = sorted(filter(is_bag, folder.glob('*/')), key=lambda path: path.stat().st_mtime)
         if not bags:
-            self._remarks.append(NO_RECORDING)
-            return
-        try:
-            self.add_bag(bags[-1])
-        except InputError as error:  # such as one that has just begun
-            self._remarks.append(str(error))
+            raise InputError(NO_RECORDING)
+        self.add_bag(bags[-1])
 
     def add_bag(self, path: Path) -> None:
         """Add the end of a bag, and the parameters that it holds."""
         bag, size, kept = Bag(path, salvage=True), 0, deque[Message]()
-        for message in bag.messages():
+        for message in bag.messages(self._topics_of(bag)):
             kept.append(message)
             size += len(message.data)
             first = message.log_time - self._case.seconds * 1e9
             while kept and (size > self._room or kept[0].log_time < first):
                 size -= len(kept.popleft().data)
         parameters: dict[str, Any] = {}
+        sound = []
         for message in kept:
-            parameters |= self._learn_from(bag.types[message.topic], message.data)
-        self._bags.append((f'log_{len(self._bags) + 1}', bag, list(kept)))
+            try:
+                parameters |= self._learn_from(bag.types[message.topic], message.data)
+                sound.append(message)
+            except Exception as error:  # as of an older interface
+                bag.refuse(message, str(error))
+        self._bags.append((f'log_{len(self._bags) + 1}', bag, sound))
         if parameters:
             self.add_text('parameters.json', json_text(parameters))
-        self._remarks += bag.notes
+
+    def _topics_of(self, bag: Bag) -> list[str]:
+        """Return the topics of a bag in which secrets can be hidden; remark on all others."""
+        topics = []
+        for topic, kind in bag.types.items():
+            try:
+                why = 'holds bytes, in which nothing can be hidden' if holds_bytes(kind) else ''
+            except InputError:
+                why = 'is not installed here'
+            if why:
+                self._remarks.append(f'{topic} is left out: its type {kind} {why}')
+            else:
+                topics.append(topic)
+        return topics
 
     def _learn_from(self, type_name: str, data: bytes) -> dict[str, Any]:
         """Learn who is named in a message; return the parameters that it holds."""
@@ -225,10 +269,8 @@ class _Parts:
         elif self._case.tables:
             size = path.stat().st_size
             raise InputError(f'{path} has {size} bytes, allowed are {self._room:.0f}')
-        elif self._case.table_refused:
-            raise InputError(BINARY.format(name=path))
         else:
-            self._remarks.append(BINARY.format(name=path.name))
+            raise InputError(BINARY.format(name=path))
 
     def _ends_of(self, path: Path) -> tuple[bytes, bytes]:
         """Return a file in whole, with nothing after it, or what it begins and ends with."""
@@ -275,28 +317,23 @@ class _Parts:
     def _masked_bag(
         self, name: str, bag: Bag, messages: Sequence[Message]
     ) -> list[tuple[str, bytes]]:
-        """Return the files of a bag of messages; those of types that are not known stay out."""
+        """Return the files of a bag of messages."""
         topics = {message.topic: self._mask.text(message.topic) for message in messages}
-        left_out: set[str] = set()
         with tempfile.TemporaryDirectory() as folder, BagWriter(Path(folder), name) as writer:
             for topic, shown in topics.items():
-                try:
-                    kind = bag.types[topic]
-                    writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
-                except InputError:
-                    left_out.add(topic)
+                kind = bag.types[topic]
+                writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
             for message in messages:
-                if message.topic not in left_out:
+                try:
                     data = self._mask.message(bag.types[message.topic], message.data)
-                    times = {'log_time': message.log_time, 'publish_time': message.publish_time}
-                    writer.write(topics[message.topic], data, **times)
+                except Exception as error:
+                    bag.refuse(message, str(error))
+                    continue
+                times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+                writer.write(topics[message.topic], data, **times)
             writer.close()
-            files = [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
-        self._remarks += [
-            f'{topics[topic]} is left out: its type {bag.types[topic]} is not installed here'
-            for topic in sorted(left_out)
-        ]
-        return files
+            self._remarks += bag.notes
+            return [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
 
     def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:
         hidden = self._mask.count
@@ -312,6 +349,7 @@ class _Parts:
 NAMING = {
     'ballscrew_msgs/msg/OutOfZone': OutOfZone,
     'ballscrew_msgs/msg/BallScrewState': BallScrewState,
+    'ballscrew_msgs/msg/AxisHealth': AxisHealth,
     'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
 }
 """Messages that name persons or machines."""
@@ -321,8 +359,9 @@ def _named_in(message: Any) -> dict[Secret, list[str]]:
     """Return what a message names: persons and their reasons, or machines."""
     if isinstance(message, DiagnosticArray):
         pairs = [pair for status in message.status for pair in status.values]
-        return {Secret.HOST: [pair.value for pair in pairs if pair.key == HOST_KEY]}
-    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason')
+        hosts = [pair.value.partition(' (process ')[0] for pair in pairs if pair.key == HOST_KEY]
+        return {Secret.HOST: [name for host in hosts for name in with_short(host)]}
+    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason', 'baseline_reason')
     return {Secret.NAME: [getattr(message, name, '') for name in names]}
 
 
@@ -339,9 +378,15 @@ def _files_in(folder: str) -> list[Path]:
     return sorted(path for path in Path(folder).iterdir() if path.is_file())
 
 
+def _end_of(stream: BinaryIO) -> str:
+    stream.seek(max(0, stream.seek(0, os.SEEK_END) - LARGEST_TEXT))
+    return stream.read(LARGEST_TEXT).decode('utf-8', 'replace')
+
+
 def _text_of(path: Path) -> str:
     try:
-        return path.read_bytes()[-LARGEST_TEXT:].decode('utf-8', 'replace')
+        with path.open('rb') as stream:
+            return _end_of(stream)
     except OSError as error:
         raise InputError(f'{path} cannot be read: {error.strerror}') from None
 

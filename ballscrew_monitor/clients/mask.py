@@ -39,12 +39,16 @@ class Secret(enum.StrEnum):
 ALWAYS = {
     Secret.USER: r'(?:(?<=/home/)|(?<=/Users/)|(?<=\\Users\\))[^/\\\s"\':,;]+',
     Secret.HOST: r'(?<![\d.])(?:\d{1,3}\.){3}\d{1,3}(?![\d.])',
-    Secret.NAME: r'[\w.+-]+@[\w-]+(?:\.[\w-]+)+',
+    Secret.NAME: r'(?<![\w.+-])[\w.+-]{1,64}@[\w-]{1,63}(?:\.[\w-]{1,63})+',
     Secret.TOKEN: r'(?<=Bearer )\S+|(?<=://)[^/\s:@]+:[^/\s@]+(?=@)'
     r'|(?<=password=)\S+|(?<=token=)\S+|(?<=password: )\S+|(?<=token: )\S+'
     r'|(?<="password": ")[^"]+|(?<="token": ")[^"]+',
 }
 """What is hidden wherever it stands, by its form: homes, addresses, and texts behind their key."""
+
+BYTES = re.compile(r'sequence<(?:u?int8|octet|char)\b')
+NESTED = re.compile(r'(\w+)/(\w+)')
+"""Types of fields, as a message states them: sequences of bytes, and messages."""
 
 
 class Mask:
@@ -63,7 +67,9 @@ class Mask:
     def learn(self, kind: Secret, texts: Iterable[Any]) -> None:
         """Hide these texts from now on, as they are, in JSON, and in letters of one byte."""
         known = self._known[kind]
-        for word in {str(text).strip() for text in texts} - known:
+        wholes = [str(text) for text in texts]
+        lines = [line for whole in wholes for line in whole.splitlines()]
+        for word in {text.strip() for text in (*wholes, *lines)} - known:
             if len(word) >= LEAST:
                 narrow = word.encode('latin-1', 'replace').decode('utf-8', 'surrogateescape')
                 known |= {word, json.dumps(word)[1:-1], narrow}
@@ -83,8 +89,9 @@ class Mask:
         return self._compiled
 
     def text(self, text: str) -> str:
-        """Return a text without secrets."""
-        return self._pattern.sub(self._word, text)
+        """Return a text without secrets; line by line, so that other threads have their turn."""
+        pattern = self._pattern
+        return ''.join(pattern.sub(self._word, line) for line in text.splitlines(keepends=True))
 
     def _word(self, match: re.Match[str]) -> str:
         kind = Secret[str(match.lastgroup)]
@@ -93,9 +100,9 @@ class Mask:
 
     def message(self, type_name: str, data: bytes) -> bytes:
         """Return a serialised message without secrets; raises InputError for an unknown type."""
+        message = deserialize_message(data, message_class(type_name))
         if not self._pattern.search(data.decode('utf-8', 'replace')):
             return data
-        message = deserialize_message(data, message_class(type_name))
         return serialized(self._of_message(message))
 
     def _of_message(self, message: Any) -> Any:
@@ -111,10 +118,29 @@ class Mask:
         return self._of_message(value) if hasattr(value, 'get_fields_and_field_types') else value
 
 
+def holds_bytes(type_name: str) -> bool:
+    """
+    Return True if messages can hold a picture or such, in which nothing can be hidden.
+
+    Raises InputError for an unknown type.
+
+    """
+    if type_name.startswith('ballscrew_msgs/'):
+        return False
+    kinds = message_class(type_name).get_fields_and_field_types().values()
+    parts = {'/msg/'.join(part.groups()) for part in map(NESTED.search, kinds) if part}
+    return any(map(BYTES.match, kinds)) or any(map(holds_bytes, parts))
+
+
 def host_names() -> set[str]:
     """Return the names of this machine, with and without its domain."""
-    name = socket.gethostname()
-    return {name, name.partition('.')[0]}
+    return with_short(socket.gethostname())
+
+
+def with_short(host: str) -> set[str]:
+    """Return the name of a host, with and without its domain; an address stays whole."""
+    short = host.partition('.')[0]
+    return {host} if short.isdigit() else {host, short}
 
 
 def user_names() -> set[str]:

@@ -4,6 +4,7 @@
 
 import io
 import json
+import os
 import zipfile
 
 from ballscrew_monitor import cli
@@ -14,25 +15,39 @@ from ballscrew_monitor.clients.mask import Mask, Secret
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.judge.records import EVENT
+from ballscrew_monitor.node import heartbeat
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, Kind
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.event_messages import packed, read
-from ballscrew_msgs.msg import OutOfZone
+from ballscrew_msgs.msg import AxisHealth, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import numpy as np
 import pytest
-from sensor_msgs.msg import JointState
-from std_msgs.msg import Header
+from sensor_msgs.msg import CompressedImage, JointState, MultiEchoLaserScan
+from std_msgs.msg import Header, String
 
 HOST, USER, HOME = 'cell7-hmi', 'mgruber', '/srv/people/mgruber'
 PERSON, REASON, OTHER, TOKEN = 'Jörg Huber', 'seen by J.H.', 'cell8-hmi', 'correct-horse-battery'
 APPRENTICE = 'apprentice'  # another user, whose home is named
-SECRETS = (HOST, USER, HOME, PERSON, json.dumps(PERSON)[1:-1], REASON, OTHER, TOKEN, APPRENTICE)
+CHANGE = 'nut changed by Huber'
+SECRETS = (
+    CHANGE,
+    HOST,
+    USER,
+    HOME,
+    PERSON,
+    json.dumps(PERSON)[1:-1],
+    REASON,
+    OTHER,
+    TOKEN,
+    APPRENTICE,
+)
 TOPICS = {
     f'/{HOST.replace("-", "_")}/joint_states': 'sensor_msgs/msg/JointState',
     '/monitor/x/out_of_zone': 'ballscrew_msgs/msg/OutOfZone',
+    '/monitor/x/health': 'ballscrew_msgs/msg/AxisHealth',
     '/diagnostics': 'diagnostic_msgs/msg/DiagnosticArray',
     '/monitor/judge_events': 'ballscrew_msgs/msg/JudgeEvents',
 }
@@ -48,6 +63,13 @@ def machine(monkeypatch, tmp_path):
     monkeypatch.setattr(reports.tempfile, 'tempdir', str(tmp_path))
 
 
+def instance_of(host):
+    """Return what a node on a host says of itself."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(heartbeat.socket, 'gethostname', lambda: host)
+        return heartbeat.own_instance().value
+
+
 def messages_at(second):
     """Return a message of each topic, all of which name somebody."""
     snapshot = {
@@ -55,11 +77,12 @@ def messages_at(second):
         'values': {'x.surface': f'{HOME}/surface.npz', 'x.speed.topic': '/joint_states'},
         'memory': {'shelve_reason': REASON, 'ending': ['ACKNOWLEDGED', PERSON, '']},
     }
-    pairs = [KeyValue(key='Host', value=OTHER)]
+    pairs = [KeyValue(key='Host', value=instance_of(f'{OTHER}.plant.local'))]
     status = DiagnosticStatus(name='node', message=f'it runs on {OTHER}', values=pairs)
     return (
         serialized(JointState(header=Header(frame_id=f'{HOST}/base'), velocity=[float(second)])),
         serialized(OutOfZone(axis='x', event_id=3, acknowledged_by=PERSON)),
+        serialized(AxisHealth(baseline_reason=CHANGE)),
         serialized(DiagnosticArray(status=[status])),
         packed(second, np.zeros(0, EVENT), {}, [json.dumps(snapshot)]),
     )
@@ -149,7 +172,7 @@ def test_no_secret_leaves_the_machine(machine, state_dir, table, failure, tmp_pa
     [
         (Secret.HOST, {HOST, OTHER}),
         (Secret.USER, {USER, HOME, APPRENTICE}),
-        (Secret.NAME, {PERSON, json.dumps(PERSON)[1:-1], REASON}),
+        (Secret.NAME, {PERSON, json.dumps(PERSON)[1:-1], REASON, CHANGE}),
         (Secret.TOKEN, set()),
     ],
 )
@@ -242,3 +265,79 @@ def test_a_table_in_letters_of_two_bytes_is_read(machine, tmp_path):
     content, _ = fault_report(FaultCase(paths=[table], failures=[]))
     files, _ = unpacked(content, tmp_path / 'there')
     assert files['log_wide.csv'].decode().endswith('at HOST\ntime_s,speed\n0,1\n')
+
+
+def test_only_files_of_this_user_are_taken_for_failures(machine, tmp_path, failure):
+    key = tmp_path / 'id_ed25519'
+    key.write_text('PRIVATE KEY')
+    (tmp_path / 'ballscrew_failure_2.txt').symlink_to(key)
+    (tmp_path / 'ballscrew_failure_3.txt').hardlink_to(key)
+    (tmp_path / 'ballscrew_failure_4.txt').mkdir()
+    os.mkfifo(tmp_path / 'ballscrew_failure_5.txt')
+    assert reports.own_failures() == [failure.read_text()]
+
+
+def test_a_long_run_of_letters_is_masked_in_its_length(machine):
+    letters = 'a' * 1_000_000  # each letter of which may begin an address
+    text = f'{letters}\nfrom {"a" * 64}@{"b" * 63}.{"c" * 63}.org'
+    assert Mask().text(text) == f'{letters}\nfrom NAME'
+
+
+def test_a_name_of_several_lines_is_hidden(machine):
+    mask = Mask()
+    mask.learn(Secret.NAME, ['seen by\nHuber'])
+    assert mask.text('seen by\nHuber, "seen by\\nHuber", Huber') == 'NAME\nNAME, "NAME", NAME'
+
+
+def test_what_holds_bytes_or_is_of_no_known_type_stays_out_of_a_bag(machine, tmp_path):
+    bag = tmp_path / 'bag'
+    with BagWriter(bag, bag.name) as writer:
+        for message in (JointState(), CompressedImage(data=b'face'), MultiEchoLaserScan()):
+            kind = f'sensor_msgs/msg/{type(message).__name__}'
+            topic = f'/{type(message).__name__}'
+            writer.add_topic(Topic(name=topic, type_name=kind, offer=Offer.RELIABLE))
+            writer.write(topic, serialized(message), log_time=SECOND, publish_time=SECOND)
+    content, lines = fault_report(FaultCase(paths=[bag], failures=[]))
+    _, heard = unpacked(content, tmp_path / 'there')
+    assert heard.keys() == {'/JointState', '/MultiEchoLaserScan'}
+    assert any(line.startswith('/CompressedImage is left out') for line in lines)
+    assert masks.holds_bytes('std_msgs/msg/UInt8MultiArray')
+    assert not masks.holds_bytes('ballscrew_msgs/msg/JudgeEvents')
+
+
+def test_a_damaged_part_leaves_all_others(machine, state_dir, table, tmp_path):
+    (state_dir / 'state.sqlite3').write_bytes(b'damaged')
+    empty = tmp_path / 'empty'
+    empty.mkdir()
+    (empty / 'metadata.yaml').write_text('?')
+    content, lines = fault_report(FaultCase(paths=[state_dir, empty, table], failures=[]))
+    files, heard = unpacked(content, tmp_path / 'there')
+    assert leaks(files, heard) == set()
+    assert {'parameters.json', 'log_USER.csv'} <= files.keys()
+    assert len(heard) == len(TOPICS)
+    assert any('state.sqlite3' in line for line in lines)
+    assert any('metadata.yaml' in line or '/empty' in line for line in lines)
+
+
+def test_a_message_that_does_not_decode_stays_out(machine, tmp_path):
+    bag = tmp_path / 'bag'
+    names = {**TOPICS, '/note': 'std_msgs/msg/String'}
+    with BagWriter(bag, bag.name) as writer:
+        for name, kind in names.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
+        messages = *messages_at(1), serialized(String(data=HOST))
+        for name, data in zip(names, messages, strict=True):
+            writer.write(name, data, log_time=SECOND, publish_time=SECOND)
+            # Its text ends before its length says so; and it names somebody.
+            short = b'\0\1\0\0\xff\xff\0\0' + PERSON.encode() + HOST.encode()
+            writer.write(name, short, log_time=SECOND, publish_time=SECOND)
+    content, lines = fault_report(FaultCase(paths=[bag], failures=[]))
+    files, heard = unpacked(content, tmp_path / 'there')
+    assert leaks(files, heard) == set()
+    assert [len(each) for each in heard.values()] == [1] * len(names)
+    assert sum('does not decode' in line for line in lines) == len(names)
+
+
+def test_an_address_of_a_host_is_learned_in_whole():
+    assert masks.with_short('10.1.2.3') == {'10.1.2.3'}
+    assert masks.with_short('cell7.plant.local') == {'cell7.plant.local', 'cell7'}
