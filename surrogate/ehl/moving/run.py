@@ -117,7 +117,7 @@ class March:
 
     def _touches(self, steps: list[Measure]) -> bool:
         """Return True if RCS over the last turn is as much as is wanted."""
-        last = [step.rcs for step in steps[-self.turn :]]
+        last = [step.rcs for step in steps[slice(-self.turn, None)]]
         return len(last) == self.turn and sum(last) >= self.enough * self.turn
 
     def _moves(self, transits: float) -> range:
