@@ -30,7 +30,6 @@ from surrogate.parameters import (
     Screw,
     screw_and_oil,
 )
-from surrogate.raceway.stated import Roughness
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -141,7 +140,7 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
         if not re.fullmatch(NAME[0], name):
             raise InputError(f'{where}: name must be {NAME[1]}')
         if changes := {key: value for key, value in entry.items() if key != 'name'}:
-            sheet = replace(screw.roughness, **dict.fromkeys(Roughness.MARCHED))
+            sheet = replace(screw.roughness, marched_film=None, marched_error=None)
             if 'rms_um' in changes:  # a stated Rq, not a typical one
                 sheet = replace(sheet, rms_low=None, rms_high=None)
             roughness = changed_sheet(sheet, changes, where)

@@ -467,7 +467,8 @@ class _Above:
 
     def _factors(self) -> str:
         """Return the first row that states a scale other than 1, or an offset other than 0."""
-        first = self.block.rows[self.block.begin :][:FOLLOWING]
+        begin = self.block.begin
+        first = self.block.rows[begin:][:FOLLOWING]
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
             key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')

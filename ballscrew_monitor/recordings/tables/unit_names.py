@@ -116,7 +116,7 @@ def factor_of(column: str, kind: str) -> str:
     if factor := _FACTOR.search(column):
         return factor[0].strip(' []()')
     bare = BRACKETS.sub(' ', column).strip()
-    texts = (bare[match.start() :] for match in _MULTIPLE.finditer(bare))
+    texts = (bare[slice(match.start(), None)] for match in _MULTIPLE.finditer(bare))
     return next((text for text in texts if _plain(text.lstrip('0123456789.,^+ _')) in known), '')
 
 

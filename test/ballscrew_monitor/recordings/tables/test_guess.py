@@ -966,6 +966,6 @@ def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tm
 @pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])
 def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_csv, tmp_path):
     columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.3 * SPEED}
-    columns['x_force_N'][50 : 50 + count] = mark
+    columns['x_force_N'][slice(50, 50 + count)] = mark
     log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
     assert guess(log).content['axes']['x']['load']
