@@ -70,7 +70,7 @@ class FaultCase:
 
     Of a log go the last `seconds` [s]. `shown` is not hidden. A table that is no text goes in as
     it is with `tables`; else it is refused, or left out unless `table_refused`. `failures` None
-    stands for those of this user.
+    stands for those of this user. `tokens`, and `names` of persons with their reasons, are hidden.
 
     """
 
@@ -82,6 +82,7 @@ class FaultCase:
     tables: bool = False
     table_refused: bool = True
     tokens: Sequence[str] = ()
+    names: Sequence[str] = ()
 
 
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
@@ -160,6 +161,7 @@ class _Parts:
 
     def __init__(self, case: FaultCase) -> None:
         self._case, self._mask = case, Mask(case.shown, case.tokens)
+        self._mask.learn(Secret.NAME, case.names)
         self._texts: list[tuple[str, str]] = []
         self._files: list[tuple[str, bytes]] = []
         self._bags: list[tuple[str, Bag, list[Message]]] = []

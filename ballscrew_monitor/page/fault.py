@@ -30,6 +30,7 @@ def fault_maker(hub: Hub, log: Path | None, token: str | None) -> Making:
             texts={name: text for view in views for name, text in texts_of(view).items()},
             tokens=[token] if token else [],
             table_refused=False,
+            names=[name for view in views for name in names_in(view)],
         )
         content, _ = await asyncio.to_thread(fault_report, case)
         return content
@@ -55,6 +56,13 @@ def texts_of(view: AxisView) -> dict[str, str]:
     }
     name = view.name.strip('/').replace('/', '_')
     return {f'page_{name}.json': json_text(known), f'page_{name}.csv': buffer.getvalue()}
+
+
+def names_in(view: AxisView) -> list[str]:
+    """Return who is named in what is known of an axis, and their reasons."""
+    keys = 'acknowledged_by', 'acknowledge_reason'
+    names = [event.get(key) or '' for event in view.events.values() for key in keys]
+    return [*names, (view.state.get('shelved') or {}).get('reason', '')]
 
 
 def places_of(views: list[AxisView]) -> set[Path]:

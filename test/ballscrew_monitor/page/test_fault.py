@@ -12,8 +12,10 @@ import zipfile
 
 from ballscrew_monitor.clients import fault_report as reports
 from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.page import records
 from ballscrew_monitor.page.fault import fault_maker, places_of
 from ballscrew_monitor.page.hub import Hub
+from ballscrew_msgs.msg import OutOfZone
 import pytest
 from surrogate.files import InputError
 
@@ -77,6 +79,10 @@ def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
     for stamp in range(2, 200):
         view.history.take(page_parts.row(float(stamp)))
     view.hear_parameters({'x.speed.topic': '/joint_states'})
+    end = OutOfZone.ENDING_ACKNOWLEDGED
+    who = {'acknowledged_by': 'Jane Doe', 'acknowledge_reason': 'seen by JD'}
+    view.hear_event(records.event_record(OutOfZone(event_id=1, ending=end, **who)))
+    view.state = {**view.state, 'shelved': {'left_s': 1.0, 'reason': 'oil due (Bo)'}}
     hub = Hub()
     hub.add(view)
     content = asyncio.run(fault_maker(hub, log, TOKEN)())
@@ -84,6 +90,8 @@ def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
         known = json.loads(archive.read('page_monitor_x.json'))
         rows = list(csv.DictReader(io.StringIO(archive.read('page_monitor_x.csv').decode())))
         assert TOKEN.encode() not in archive.read('log_log.csv')
+    assert [known['events'][0][key] for key in who] == ['NAME', 'NAME']
+    assert known['state']['shelved']['reason'] == 'NAME'
     assert known['parameters'] == {'x.speed.topic': '/joint_states'}
     assert (known['state']['zone'], known['efficiency_limit']) == ('optimal', 0.85)
     assert [float(rows[at]['stamp']) for at in (0, -1)] == [79.0, 199.0]
