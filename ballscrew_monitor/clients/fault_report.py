@@ -56,7 +56,7 @@ PACKAGES = (
 SETTINGS = ('RMW_IMPLEMENTATION', 'ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DISTRO')
 """Variables of the environment that are told."""
 NO_RECORDING = 'no recording of the node: it keeps one where its parameter record says so'
-WIDE = (b'\xff\xfe', b'\xfe\xff')
+WIDE = {b'\xff\xfe': 'utf-16-le', b'\xfe\xff': 'utf-16-be'}
 BINARY = (
     '{name} is a table that is no text, in which nothing can be hidden: save it as CSV, or put it '
     'in as it is with --include tables'
@@ -264,7 +264,7 @@ class _Parts:
         """Add a table: its first lines and its end."""
         head, end = self._ends_of(path)
         name = f'log_{path.name}'
-        if b'\0' not in head or head.startswith(WIDE):
+        if b'\0' not in head or head[:2] in WIDE:
             self._texts.append((name, _text_of_table(head, end)))
         elif self._case.tables and not end:
             self._files.append((name, head))
@@ -283,7 +283,7 @@ class _Parts:
                 if size <= self._room:
                     return stream.read(), b''
                 head = stream.read(HEAD)
-                stream.seek(size - int(self._room))
+                stream.seek((size - int(self._room)) // 2 * 2)  # a letter of two bytes stays whole
                 return head, stream.read()
         except OSError as error:
             raise InputError(f'log {path} cannot be read: {error.strerror}') from None
@@ -369,11 +369,12 @@ def _named_in(message: Any) -> dict[Secret, list[str]]:
 
 def _text_of_table(head: bytes, end: bytes) -> str:
     """Return a table by its first bytes and its last ones, both in whole lines."""
-    if head.startswith(WIDE):
-        return (head + end).decode('utf-16', 'replace')
+    wide = WIDE.get(head[:2])
+    coding = (wide, 'replace') if wide else ('utf-8', 'surrogateescape')
+    first, last = (part.decode(*coding) for part in (head, end))
     if end:
-        head, end = head.rpartition(b'\n')[0] + b'\n', end.partition(b'\n')[2]
-    return (head + end).decode('utf-8', 'surrogateescape')
+        first, last = first.rpartition('\n')[0] + '\n', last.partition('\n')[2]
+    return (first + last).removeprefix('\ufeff')
 
 
 def _files_in(folder: str) -> list[Path]:
