@@ -193,9 +193,11 @@ class _Parts:
         )
         entries = [entry.record() for entry in reversed(events)]
         for entry in entries:
-            self._mask.learn(Secret.NAME, (entry.get('name', ''), entry.get('reason', '')))
+            self._mask.learn(Secret.NAME, [entry.get('name', '')])
+            self._mask.learn_reasons([entry.get('reason', '')])
         for axis in axes:
-            self._mask.learn(Secret.NAME, (axis.ended_by, axis.end_reason, axis.reason))
+            self._mask.learn(Secret.NAME, [axis.ended_by])
+            self._mask.learn_reasons([axis.end_reason, axis.reason])
         kept = {'axes': axes, 'corrections': corrections}
         self.add_text(
             'state.json',
@@ -251,14 +253,22 @@ class _Parts:
         if type_name == EVENTS_TYPE:
             for taken in map(json.loads, read_events(data).snapshots):
                 memory = taken.get('memory', {})
-                named = memory.get('shelve_reason', ''), *memory.get('ending', ())[1:]
-                self._mask.learn(Secret.NAME, named)
+                _, name, reason = (*memory.get('ending', ()), '', '', '')[:3]
+                self._mask.learn(Secret.NAME, [name])
+                self._mask.learn_reasons([memory.get('shelve_reason', ''), reason])
                 values |= taken.get('values', {})
         elif kind := NAMING.get(type_name):
-            message = deserialize_message(data, kind)
-            for secret, texts in _named_in(message).items():
-                self._mask.learn(secret, texts)
+            self._learn_from_message(deserialize_message(data, kind))
         return values
+
+    def _learn_from_message(self, message: Any) -> None:
+        if isinstance(message, DiagnosticArray):
+            pairs = [pair for status in message.status for pair in status.values]
+            for host in (pair.value for pair in pairs if pair.key == HOST_KEY):
+                self._mask.learn(Secret.HOST, with_short(host.partition(' (process ')[0]))
+            return
+        self._mask.learn(Secret.NAME, [getattr(message, 'acknowledged_by', '')])
+        self._mask.learn_reasons(getattr(message, name, '') for name in REASONS)
 
     def add_table(self, path: Path) -> None:
         """Add a table: its first lines and its end."""
@@ -355,16 +365,7 @@ NAMING = {
     'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
 }
 """Messages that name persons or machines."""
-
-
-def _named_in(message: Any) -> dict[Secret, list[str]]:
-    """Return what a message names: persons and their reasons, or machines."""
-    if isinstance(message, DiagnosticArray):
-        pairs = [pair for status in message.status for pair in status.values]
-        hosts = [pair.value.partition(' (process ')[0] for pair in pairs if pair.key == HOST_KEY]
-        return {Secret.HOST: [name for host in hosts for name in with_short(host)]}
-    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason', 'baseline_reason')
-    return {Secret.NAME: [getattr(message, name, '') for name in names]}
+REASONS = ('acknowledge_reason', 'shelve_reason', 'baseline_reason')
 
 
 def _text_of_table(head: bytes, end: bytes) -> str:

@@ -354,3 +354,15 @@ def test_the_end_of_a_table_in_letters_of_two_bytes_is_read(machine, tmp_path, m
     lines = files['log_wide.csv'].decode().splitlines()
     assert lines[-1].endswith('at HOST')
     assert set(lines[:-1]) == {'time_s,speed'}
+
+
+def test_a_reason_of_a_word_of_the_product_hides_no_parameter(machine, tmp_path):
+    folder = tmp_path / 'state'
+    state = RestartState(folder)
+    state.keep(None, entry_of(Kind.SHELVE, 'x', 5, {'name': 'Max', 'reason': 'load'}))
+    state.keep(None, entry_of(Kind.SHELVE, 'x', 5, {'name': 'Max', 'reason': 'OK'}))
+    state.close()
+    texts = {'page.json': 'x.load.topic ok Max'}
+    content, _ = fault_report(FaultCase(paths=[folder], texts=texts, failures=[]))
+    files, _ = unpacked(content, tmp_path / 'there')
+    assert files['page.json'] == b'x.load.topic ok NAME'
