@@ -70,7 +70,7 @@ class FaultCase:
 
     Of a log go the last `seconds` [s]. `shown` is not hidden. A table that is no text goes in as
     it is with `tables`; else it is refused, or left out unless `table_refused`. `failures` None
-    stands for those of this user. `tokens`, and `names` of persons with their reasons, are hidden.
+    stands for those of this user. `tokens`, `names` of persons and their `reasons` are hidden.
 
     """
 
@@ -83,6 +83,7 @@ class FaultCase:
     table_refused: bool = True
     tokens: Sequence[str] = ()
     names: Sequence[str] = ()
+    reasons: Sequence[str] = ()
 
 
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
@@ -162,6 +163,7 @@ class _Parts:
     def __init__(self, case: FaultCase) -> None:
         self._case, self._mask = case, Mask(case.shown, case.tokens)
         self._mask.learn(Secret.NAME, case.names)
+        self._mask.learn_reasons(case.reasons)
         self._texts: list[tuple[str, str]] = []
         self._files: list[tuple[str, bytes]] = []
         self._bags: list[tuple[str, Bag, list[Message]]] = []

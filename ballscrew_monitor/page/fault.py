@@ -29,16 +29,21 @@ def fault_maker(hub: Hub, log: Path | None, token: str | None) -> Making:
     async def make() -> bytes:
         views = list(hub.axes.values())
         axes = [(view.name, view.history.since(0), known_of(view)) for view in views]
-        names = [name for view in views for name in names_in(view)]
-        return await asyncio.to_thread(_content, views, axes, names)
+        events = [event for view in views for event in view.events.values()]
+        names = [event.get('acknowledged_by', '') for event in events]
+        reasons = [reason for view in views for reason in reasons_in(view)]
+        return await asyncio.to_thread(_content, views, axes, names, reasons)
 
-    def _content(views: list[AxisView], axes: list[Known], names: list[str]) -> bytes:
+    def _content(
+        views: list[AxisView], axes: list[Known], names: list[str], reasons: list[str]
+    ) -> bytes:
         case = FaultCase(
             paths=[log] if log else sorted(places_of(views)),
             texts={name: text for axis in axes for name, text in texts_of(*axis).items()},
             tokens=[token] if token else [],
             table_refused=False,
             names=names,
+            reasons=reasons,
         )
         return fault_report(case)[0]
 
@@ -68,11 +73,10 @@ def texts_of(name: str, rows: Array, known: Mapping[str, Any]) -> dict[str, str]
     return {f'page_{name}.json': json_text(known), f'page_{name}.csv': buffer.getvalue()}
 
 
-def names_in(view: AxisView) -> list[str]:
-    """Return who is named in what is known of an axis, and their reasons."""
-    keys = 'acknowledged_by', 'acknowledge_reason'
-    names = [event.get(key) or '' for event in view.events.values() for key in keys]
-    return [*names, (view.state.get('shelved') or {}).get('reason', '')]
+def reasons_in(view: AxisView) -> list[str]:
+    """Return why warnings of an axis were acknowledged and shelved."""
+    reasons = [event.get('acknowledge_reason', '') for event in view.events.values()]
+    return [*reasons, (view.state.get('shelved') or {}).get('reason', '')]
 
 
 def places_of(views: list[AxisView]) -> set[Path]:

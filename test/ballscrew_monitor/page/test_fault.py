@@ -97,6 +97,8 @@ def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
     end = OutOfZone.ENDING_ACKNOWLEDGED
     who = {'acknowledged_by': 'Jane Doe', 'acknowledge_reason': 'seen by JD'}
     view.hear_event(records.event_record(OutOfZone(event_id=1, ending=end, **who)))
+    again = {'acknowledged_by': 'Jane Doe', 'acknowledge_reason': 'speed'}
+    view.hear_event(records.event_record(OutOfZone(event_id=2, ending=end, **again)))
     view.state = {**view.state, 'shelved': {'left_s': 1.0, 'reason': 'oil due (Bo)'}}
     hub = Hub()
     hub.add(view)
