@@ -56,7 +56,7 @@ PACKAGES = (
 SETTINGS = ('RMW_IMPLEMENTATION', 'ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DISTRO')
 """Variables of the environment that are told."""
 NO_RECORDING = 'no recording of the node: it keeps one where its parameter record says so'
-WIDE = (b'\xff\xfe', b'\xfe\xff')
+WIDE = {b'\xff\xfe': 'utf-16-le', b'\xfe\xff': 'utf-16-be'}
 BINARY = (
     '{name} is a table that is no text, in which nothing can be hidden: save it as CSV, or put it '
     'in as it is with --include tables'
@@ -70,7 +70,7 @@ class FaultCase:
 
     Of a log go the last `seconds` [s]. `shown` is not hidden. A table that is no text goes in as
     it is with `tables`; else it is refused, or left out unless `table_refused`. `failures` None
-    stands for those of this user.
+    stands for those of this user. `tokens`, `names` of persons and their `reasons` are hidden.
 
     """
 
@@ -82,6 +82,8 @@ class FaultCase:
     tables: bool = False
     table_refused: bool = True
     tokens: Sequence[str] = ()
+    names: Sequence[str] = ()
+    reasons: Sequence[str] = ()
 
 
 def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
@@ -160,6 +162,8 @@ class _Parts:
 
     def __init__(self, case: FaultCase) -> None:
         self._case, self._mask = case, Mask(case.shown, case.tokens)
+        self._mask.learn(Secret.NAME, case.names)
+        self._mask.learn_reasons(case.reasons)
         self._texts: list[tuple[str, str]] = []
         self._files: list[tuple[str, bytes]] = []
         self._bags: list[tuple[str, Bag, list[Message]]] = []
@@ -191,9 +195,11 @@ class _Parts:
         )
         entries = [entry.record() for entry in reversed(events)]
         for entry in entries:
-            self._mask.learn(Secret.NAME, (entry.get('name', ''), entry.get('reason', '')))
+            self._mask.learn(Secret.NAME, [entry.get('name', '')])
+            self._mask.learn_reasons([entry.get('reason', '')])
         for axis in axes:
-            self._mask.learn(Secret.NAME, (axis.ended_by, axis.end_reason, axis.reason))
+            self._mask.learn(Secret.NAME, [axis.ended_by])
+            self._mask.learn_reasons([axis.end_reason, axis.reason])
         kept = {'axes': axes, 'corrections': corrections}
         self.add_text(
             'state.json',
@@ -249,20 +255,28 @@ class _Parts:
         if type_name == EVENTS_TYPE:
             for taken in map(json.loads, read_events(data).snapshots):
                 memory = taken.get('memory', {})
-                named = memory.get('shelve_reason', ''), *memory.get('ending', ())[1:]
-                self._mask.learn(Secret.NAME, named)
+                _, name, reason = (*memory.get('ending', ()), '', '', '')[:3]
+                self._mask.learn(Secret.NAME, [name])
+                self._mask.learn_reasons([memory.get('shelve_reason', ''), reason])
                 values |= taken.get('values', {})
         elif kind := NAMING.get(type_name):
-            message = deserialize_message(data, kind)
-            for secret, texts in _named_in(message).items():
-                self._mask.learn(secret, texts)
+            self._learn_from_message(deserialize_message(data, kind))
         return values
+
+    def _learn_from_message(self, message: Any) -> None:
+        if isinstance(message, DiagnosticArray):
+            pairs = [pair for status in message.status for pair in status.values]
+            for host in (pair.value for pair in pairs if pair.key == HOST_KEY):
+                self._mask.learn(Secret.HOST, with_short(host.partition(' (process ')[0]))
+            return
+        self._mask.learn(Secret.NAME, [getattr(message, 'acknowledged_by', '')])
+        self._mask.learn_reasons(getattr(message, name, '') for name in REASONS)
 
     def add_table(self, path: Path) -> None:
         """Add a table: its first lines and its end."""
         head, end = self._ends_of(path)
         name = f'log_{path.name}'
-        if b'\0' not in head or head.startswith(WIDE):
+        if b'\0' not in head or head[:2] in WIDE:
             self._texts.append((name, _text_of_table(head, end)))
         elif self._case.tables and not end:
             self._files.append((name, head))
@@ -281,7 +295,7 @@ class _Parts:
                 if size <= self._room:
                     return stream.read(), b''
                 head = stream.read(HEAD)
-                stream.seek(size - int(self._room))
+                stream.seek((size - int(self._room)) // 2 * 2)  # a letter of two bytes stays whole
                 return head, stream.read()
         except OSError as error:
             raise InputError(f'log {path} cannot be read: {error.strerror}') from None
@@ -353,25 +367,17 @@ NAMING = {
     'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
 }
 """Messages that name persons or machines."""
-
-
-def _named_in(message: Any) -> dict[Secret, list[str]]:
-    """Return what a message names: persons and their reasons, or machines."""
-    if isinstance(message, DiagnosticArray):
-        pairs = [pair for status in message.status for pair in status.values]
-        hosts = [pair.value.partition(' (process ')[0] for pair in pairs if pair.key == HOST_KEY]
-        return {Secret.HOST: [name for host in hosts for name in with_short(host)]}
-    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason', 'baseline_reason')
-    return {Secret.NAME: [getattr(message, name, '') for name in names]}
+REASONS = ('acknowledge_reason', 'shelve_reason', 'baseline_reason')
 
 
 def _text_of_table(head: bytes, end: bytes) -> str:
     """Return a table by its first bytes and its last ones, both in whole lines."""
-    if head.startswith(WIDE):
-        return (head + end).decode('utf-16', 'replace')
+    wide = WIDE.get(head[:2])
+    coding = (wide, 'replace') if wide else ('utf-8', 'surrogateescape')
+    first, last = (part.decode(*coding) for part in (head, end))
     if end:
-        head, end = head.rpartition(b'\n')[0] + b'\n', end.partition(b'\n')[2]
-    return (head + end).decode('utf-8', 'surrogateescape')
+        first, last = first.rpartition('\n')[0] + '\n', last.partition('\n')[2]
+    return (first + last).removeprefix('\ufeff')
 
 
 def _files_in(folder: str) -> list[Path]:

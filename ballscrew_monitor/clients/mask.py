@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 import contextlib
 import enum
+import functools
 import getpass
 import json
 import os
@@ -22,6 +23,8 @@ from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.fields import message_class
+from ballscrew_monitor.settings.parameters import defaults
+from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
 
 LEAST = 2  # characters of a name that is looked for: a single one is in every text
@@ -64,13 +67,19 @@ class Mask:
         self.learn(Secret.USER, user_names())
         self.learn(Secret.TOKEN, tokens)
 
-    def learn(self, kind: Secret, texts: Iterable[Any]) -> None:
+    def learn_reasons(self, texts: Iterable[Any]) -> None:
+        """Hide why persons did something, but not where that is a word of this product."""
+        self.learn(Secret.NAME, texts, but=product_words())
+
+    def learn(
+        self, kind: Secret, texts: Iterable[Any], *, but: Collection[str] = frozenset()
+    ) -> None:
         """Hide these texts from now on, as they are, in JSON, and in letters of one byte."""
         known = self._known[kind]
         wholes = [str(text) for text in texts]
         lines = [line for whole in wholes for line in whole.splitlines()]
         for word in {text.strip() for text in (*wholes, *lines)} - known:
-            if len(word) >= LEAST:
+            if len(word) >= LEAST and word.lower() not in but:
                 narrow = word.encode('latin-1', 'replace').decode('utf-8', 'surrogateescape')
                 known |= {word, json.dumps(word)[1:-1], narrow}
                 self._compiled = None
@@ -116,6 +125,16 @@ class Mask:
         if isinstance(value, list):
             return [self._of_value(element) for element in value]
         return self._of_message(value) if hasattr(value, 'get_fields_and_field_types') else value
+
+
+@functools.cache
+def product_words() -> frozenset[str]:
+    """Return the words of parameters, and of fields and constants of messages, in small."""
+    kinds = (AxisHealth, BallScrewState, OutOfZone)
+    names = [name for kind in kinds for name in (*kind.get_fields_and_field_types(), *dir(kind))]
+    return frozenset(
+        re.findall('[a-z]+', ' '.join([*defaults(['x']), *names]).lower().replace('_', ' '))
+    )
 
 
 def holds_bytes(type_name: str) -> bool:

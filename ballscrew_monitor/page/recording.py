@@ -160,6 +160,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'advice': advised(event.target_speed),
         'acknowledged': False,
         'acknowledged_by': '',
+        'acknowledge_reason': '',
     }
 
 

@@ -207,7 +207,6 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     by_node = event.ending in (msg.OutOfZone.ENDING_STOPPED, msg.OutOfZone.ENDING_RESTARTED)
     seen = event.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED
     words = free(event.advice) if event.advice and not seen else ''
-    by = filter(None, (event.acknowledged_by, event.acknowledge_reason))
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -219,7 +218,8 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'shelved': event.shelved,
         'advice': words if by_node else advised(event.cause.target_speed) or words,
         'acknowledged': seen,
-        'acknowledged_by': ': '.join(by),
+        'acknowledged_by': event.acknowledged_by,
+        'acknowledge_reason': event.acknowledge_reason,
     }
 
 

@@ -282,21 +282,33 @@ class AxisLink:
         self._surface.ask()
         if self._is_due:
             names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
-            names += sorted(defaults([self.view.axis]).keys() - {*names})
             tell = functools.partial(self._tell_surface, self._info, names)
             self._parameters.call(GetParameters.Request(names=names), tell)
 
     def _tell_surface(self, info: SurfaceInfo, names: list[str], future: Future) -> None:
-        """Take the parameters that go with a surface, if no other has come since."""
+        """Take the parameters that go with a surface, if no other has come since; ask for all."""
         if not self._is_due or info is not self._info:
             return
         answer = future.result()
         if answer is not None and len(answer.values) == len(names):
-            path, unit, *_ = values = [*map(parameter_value_to_python, answer.values)]
-            self._post(self.view.hear_parameters, dict(zip(names, values, strict=True)))
+            path, unit = values = [*map(parameter_value_to_python, answer.values)]
+            known = dict(zip(names, values, strict=True))
+            self._post(self.view.hear_parameters, known)
             about = records.surface_record(info, unit)
             self._surface.tell(about, info, path)
             self._is_due = False
+            others = sorted(defaults([self.view.axis]).keys() - {*names})
+            tell = functools.partial(self._tell_others, info, known, others)
+            self._parameters.call(GetParameters.Request(names=others), tell)
+
+    def _tell_others(
+        self, info: SurfaceInfo, known: dict[str, Any], names: list[str], future: Future
+    ) -> None:
+        """Take all other parameters; a node of another version may not have all, and says none."""
+        answer = future.result()
+        if info is self._info and answer is not None and len(answer.values) == len(names):
+            values = map(parameter_value_to_python, answer.values)
+            self._post(self.view.hear_parameters, known | dict(zip(names, values, strict=True)))
 
     def _on_state(self, state: BallScrewState) -> None:
         row, record = records.row_of(state), records.state_record(state)

@@ -114,7 +114,8 @@ class Events {
     const more = ['active', 'usual'].filter((one) => event[one]).map((one) => ` ${Words.say(`event_${one}`)}`);
     const length = Format.time(event.duration_s) + more.join(',');
     const how = ['acknowledged', 'shelved'].find((one) => event[one]);
-    const who = event.acknowledged_by || (how ? Words.say(`event_${how}`) : '');
+    const by = [event.acknowledged_by, event.acknowledge_reason].filter(Boolean).join(': ');
+    const who = by || (how ? Words.say(`event_${how}`) : '');
     const advice = Format.element('td');
     Words.tell(advice, event.advice, this.axis.facts);
     const texts = [length, this.worst(event), who].map((text) => Format.element('td', '', text));

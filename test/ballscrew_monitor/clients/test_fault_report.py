@@ -341,3 +341,28 @@ def test_a_message_that_does_not_decode_stays_out(machine, tmp_path):
 def test_an_address_of_a_host_is_learned_in_whole():
     assert masks.with_short('10.1.2.3') == {'10.1.2.3'}
     assert masks.with_short('cell7.plant.local') == {'cell7.plant.local', 'cell7'}
+
+
+@pytest.mark.parametrize('room', [400, 401])
+def test_the_end_of_a_table_in_letters_of_two_bytes_is_read(machine, tmp_path, monkeypatch, room):
+    monkeypatch.setattr(reports, 'LARGEST_LOGS', room)
+    monkeypatch.setattr(reports, 'HEAD', 100)
+    table = tmp_path / 'wide.csv'
+    table.write_text('time_s,speed\n' * 40 + f'# {PERSON} at {HOST}\n', encoding='utf-16')
+    content, _ = fault_report(FaultCase(paths=[table], failures=[]))
+    files, _ = unpacked(content, tmp_path / 'there')
+    lines = files['log_wide.csv'].decode().splitlines()
+    assert lines[-1].endswith('at HOST')
+    assert set(lines[:-1]) == {'time_s,speed'}
+
+
+def test_a_reason_of_a_word_of_the_product_hides_no_parameter(machine, tmp_path):
+    folder = tmp_path / 'state'
+    state = RestartState(folder)
+    state.keep(None, entry_of(Kind.SHELVE, 'x', 5, {'name': 'Max', 'reason': 'load'}))
+    state.keep(None, entry_of(Kind.SHELVE, 'x', 5, {'name': 'Max', 'reason': 'OK'}))
+    state.close()
+    texts = {'page.json': 'x.load.topic ok Max'}
+    content, _ = fault_report(FaultCase(paths=[folder], texts=texts, failures=[]))
+    files, _ = unpacked(content, tmp_path / 'there')
+    assert files['page.json'] == b'x.load.topic ok NAME'

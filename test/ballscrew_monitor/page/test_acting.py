@@ -93,9 +93,10 @@ def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, tmp_path, sa
 
     def told():
         record, _ = actor.parts.read(view.events_frame())
-        return [(one['acknowledged'], one['acknowledged_by']) for one in record['events']]
+        keys = 'acknowledged', 'acknowledged_by', 'acknowledge_reason'
+        return [tuple(map(event.get, keys)) for event in record['events']]
 
-    assert told() == [(True, 'Ada: oil is ordered')]
+    assert told() == [(True, 'Ada', 'oil is ordered')]
 
     def logged():
         entries = [entry.record() for entry in read_entries(tmp_path)]
@@ -107,7 +108,7 @@ def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, tmp_path, sa
     node.wait_for(lambda: number_active(view), meanwhile=creep)
     assert node.call(AcknowledgeAlarm, 'acknowledge_as', axis='x', name='Bo').success
     node.until(lambda: not number_active(view), 'the end of the next event')
-    assert told() == [(True, 'Bo'), (True, 'Ada: oil is ordered')]
+    assert told() == [(True, 'Bo', ''), (True, 'Ada', 'oil is ordered')]
     # What the node refuses is refused in its words.
     with refused('too_long'):
         actor.ask('shelve', minutes=1e6, name='Ada', reason='holidays')

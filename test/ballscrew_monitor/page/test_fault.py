@@ -12,8 +12,10 @@ import zipfile
 
 from ballscrew_monitor.clients import fault_report as reports
 from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.page import fault, records
 from ballscrew_monitor.page.fault import fault_maker, places_of
 from ballscrew_monitor.page.hub import Hub
+from ballscrew_msgs.msg import OutOfZone
 import pytest
 from surrogate.files import InputError
 
@@ -70,6 +72,21 @@ def test_one_is_made_at_a_time(served):
     assert page.ask('/report-fault', 'POST')[0] == 200
 
 
+def test_it_is_made_in_another_thread_than_that_of_the_page(page_parts, monkeypatch):
+    hub, threads = Hub(), []
+    hub.add(page_parts.axis())
+    texts_of, places = fault.texts_of, fault.places_of
+
+    def seen(function):
+        return lambda *given: threads.append(threading.current_thread()) or function(*given)
+
+    monkeypatch.setattr(fault, 'texts_of', seen(texts_of))
+    monkeypatch.setattr(fault, 'places_of', seen(places))
+    asyncio.run(fault_maker(hub, None, None)())
+    assert len(threads) == 2
+    assert threading.current_thread() not in threads
+
+
 def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
     log = tmp_path / 'log.csv'
     log.write_text(f'time_s,speed\n0,1\n# {TOKEN}\n')
@@ -77,6 +94,12 @@ def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
     for stamp in range(2, 200):
         view.history.take(page_parts.row(float(stamp)))
     view.hear_parameters({'x.speed.topic': '/joint_states'})
+    end = OutOfZone.ENDING_ACKNOWLEDGED
+    who = {'acknowledged_by': 'Jane Doe', 'acknowledge_reason': 'seen by JD'}
+    view.hear_event(records.event_record(OutOfZone(event_id=1, ending=end, **who)))
+    again = {'acknowledged_by': 'Jane Doe', 'acknowledge_reason': 'speed'}
+    view.hear_event(records.event_record(OutOfZone(event_id=2, ending=end, **again)))
+    view.state = {**view.state, 'shelved': {'left_s': 1.0, 'reason': 'oil due (Bo)'}}
     hub = Hub()
     hub.add(view)
     content = asyncio.run(fault_maker(hub, log, TOKEN)())
@@ -84,6 +107,8 @@ def test_it_holds_what_the_page_knows_of_each_axis(page_parts, tmp_path):
         known = json.loads(archive.read('page_monitor_x.json'))
         rows = list(csv.DictReader(io.StringIO(archive.read('page_monitor_x.csv').decode())))
         assert TOKEN.encode() not in archive.read('log_log.csv')
+    assert [known['events'][0][key] for key in who] == ['NAME', 'NAME']
+    assert known['state']['shelved']['reason'] == 'NAME'
     assert known['parameters'] == {'x.speed.topic': '/joint_states'}
     assert (known['state']['zone'], known['efficiency_limit']) == ('optimal', 0.85)
     assert [float(rows[at]['stamp']) for at in (0, -1)] == [79.0, 199.0]
@@ -101,3 +126,9 @@ def test_the_folders_of_a_node_are_found_where_they_lie_here(monkeypatch, tmp_pa
     RestartState(own).close()
     recordings.mkdir()
     assert places_of(nodes) == {own, recordings}
+
+    def refuse(path):
+        raise PermissionError(path)
+
+    monkeypatch.setattr(fault, 'is_state', refuse)
+    assert places_of(nodes) == {recordings}

@@ -180,7 +180,7 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
     event = event_of(advice, ending=seen, acknowledged_by=name, acknowledge_reason=reason)
     record = records.event_record(event)
     assert record['acknowledged']
-    assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
+    assert (record['acknowledged_by'], record['acknowledge_reason']) == (name, reason)
     assert record['advice'] == advised(advice)
     event.acknowledged_by = event.acknowledge_reason = ''
     record = records.event_record(event)

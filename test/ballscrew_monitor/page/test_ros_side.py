@@ -18,16 +18,19 @@ from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.phrases import english
 from ballscrew_monitor.page.ros_side import (
     _act_all,
+    AxisLink,
     LATE_QOS,
     RosSide,
     sent_hashes,
     version_problem,
 )
+from ballscrew_monitor.settings.parameters import defaults
 from ballscrew_monitor.settings.qos import started_node
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
+from rclpy.parameter import Parameter
 from std_msgs.msg import Header
 from surrogate.surface import shipped_surface, Surface
 from surrogate.units import RPM
@@ -397,3 +400,32 @@ def test_the_hashes_of_a_node_and_of_the_page_are_those_of_the_interface(node, h
     read = node.node.get_subscriptions_info_by_topic(f'{NAME}/state')
     assert len({str(one.topic_type_hash) for one in (*infos, *read)}) == 1
     assert 'RIHS01' in str(infos[0].topic_type_hash)
+
+
+class Declared:
+    """A service of parameters, which answers with nothing if it is asked for one it has not."""
+
+    def __init__(self, values):
+        self._values = values
+
+    def call(self, request, hear):
+        known = all(name in self._values for name in request.names)
+        names = request.names if known else []
+        values = [Parameter('x', value=self._values[name]).get_parameter_value() for name in names]
+        hear(SimpleNamespace(result=lambda: SimpleNamespace(values=values)))
+
+
+@pytest.mark.parametrize('missing', [set(), {'record_dir'}])
+def test_a_node_without_a_parameter_still_has_a_surface(missing):
+    values = {name: '' for name in defaults(['x']) if name not in missing}
+    values['x.surface'] = 'here.npz'
+    link, told, heard = object.__new__(AxisLink), [], {}
+    link.view = SimpleNamespace(axis='x', hear_parameters=heard.update)
+    link._post = lambda act, *given: act(*given)
+    link._surface = SimpleNamespace(
+        ask=lambda: None, is_asking=False, tell=lambda about, info, path: told.append(path)
+    )
+    link._parameters, link._info, link._is_due = Declared(values), SurfaceInfo(), True
+    link.ask()
+    assert (told, link.is_asking) == (['here.npz'], False)
+    assert heard.keys() == ({'x.surface', 'x.speed.unit'} if missing else values.keys())

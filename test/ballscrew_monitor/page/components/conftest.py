@@ -452,6 +452,7 @@ def make_events(axis='x', *events):
         'active': False,
         'acknowledged': False,
         'acknowledged_by': '',
+        'acknowledge_reason': '',
         'shelved': False,
     }
     listed = [common | event for event in events]

@@ -27,7 +27,7 @@ def test_warnings_are_listed_and_lead_to_their_moment(acting, greeted, frames):
     acting.click('.events td button')
     begin, end = acting.ask('page.strips.range')
     assert (begin, end) == pytest.approx((frames.begin + 15.0, frames.begin + 33.4))
-    seen = {'acknowledged': True, 'acknowledged_by': 'Ada: oil is ordered'}
+    seen = {'acknowledged': True, 'acknowledged_by': 'Ada', 'acknowledge_reason': 'oil is ordered'}
     nameless = {'acknowledged': True}
     greeted.send(*frames.events('x', seen, {'active': True}, nameless, {'shelved': True}))
     acting.until("document.querySelectorAll('.events tbody tr').length === 4")
