@@ -229,7 +229,7 @@ class Intake(Waitable):
         stay = min(STAY, self._time_to_timer())
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < stay:
-            time.sleep(min(pause, stay - (now - begin)))
+            time.sleep(pause)
             now = time.monotonic()
             if self.drain():
                 came = now

@@ -41,8 +41,8 @@ def mark_of_none(values: Array) -> float:
     for value in (known.min(), known.max()) if len(known) else ():
         others = np.abs(known[known != value])
         count = len(known) - len(others)
-        if round(abs(value), 9) in FULL and HELD <= count <= MOST_HELD * len(known):
-            if np.all(FAR * others < abs(value)):
+        if round(abs(float(value)), 9) in FULL and HELD <= count <= MOST_HELD * len(known):
+            if np.all(others < abs(value) / FAR):
                 return float(value)
     return math.nan
 
