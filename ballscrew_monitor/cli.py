@@ -30,7 +30,7 @@ from ballscrew_monitor.core.interrupts import (
 from ballscrew_monitor.core.prerequisites import refuse, require
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
-from surrogate.cli import add_commands, Parser
+from surrogate.commands.cli import add_commands, Parser
 from surrogate.files import InputError, printable
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from surrogate.cli import add_workers
+from surrogate.commands.cli import add_workers
 
 TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""

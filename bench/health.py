@@ -22,7 +22,7 @@ from health_parts.public_data import print_public
 from health_parts.rivals import INSTALL, missing, rivals
 from health_parts.score import Kind, print_table, Score, score_of
 import numpy as np
-from surrogate.progress import Progress
+from surrogate.tasks.progress import Progress
 
 SCHEDULES = {
     'weekly': {},

@@ -21,7 +21,7 @@ from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, NODE_ROWS
 from ballscrew_monitor.settings.parameters import default_of, NODE_NAME
 from surrogate.contact import case, rolling_record
 from surrogate.contact import record as contact_record
-from surrogate.datasheet import key_of
+from surrogate.files.datasheet import key_of
 from surrogate.parameters import Lubricant, Material, Screw
 from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.screw import full_record, record, sensitivity
@@ -318,7 +318,7 @@ def map_page() -> str:
         table(['column', 'units'], units),
         '## Limits of files',
         'A file beyond a limit is refused in one sentence; a chunk or a message beyond its limit '
-        'is left out and counted. Declared in `surrogate/limits.py`.',
+        'is left out and counted. Declared in `surrogate/files/limits.py`.',
         table(['limit', 'value', 'meaning'], limit_rows()),
     )
 
@@ -331,7 +331,7 @@ def map_allowed(place: str) -> str:
 
 def limit_rows() -> Iterator[list[str]]:
     """Yield name, value and meaning of each limit, which stands below its value."""
-    from surrogate import limits
+    from surrogate.files import limits
 
     lines = ast.parse(Path(limits.__file__).read_text(encoding='utf-8')).body
     for line, text in zip(lines, lines[1:], strict=False):

@@ -11,6 +11,7 @@ builder at once::
 =============  ====================================================================
 folder         what it holds
 =============  ====================================================================
+files          files in and out: limits, YAML, datasheets, tables on disk
 formulas       closed-form tier, a published law a function, author and year in it
 raceway        rough surfaces: fractal, measured, identified
 ehl            one contact, smooth, mixed, dry or rolling; kernels: arrays alone
@@ -22,15 +23,14 @@ builder        datasheet to surface: tiers, sweeps; full: nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
 surface_tools  what people do with a surface file: check, query, compare, draw
 plotting       the one style of all pictures
-tasks          solves kept by content, on processes or a cluster
+tasks          solves kept by content, on processes or a cluster; progress
 identify       parasitic torque from measured torque
-paper          results beside those of the published study
+studies        results beside those of the published study
 commands       the offline subcommands
 data           datasheets, contact cases, shipped surfaces
 =============  ====================================================================
 
-Beside them: parameters, datasheet and datasheet_writer (checked inputs), child and worker (other
-processes), on_demand (a full solve for the running node), store (tables on disk), units, files,
-progress, cli. Nothing here imports ROS.
+Beside them: parameters and datasheet_writer (checked inputs), results (numbers with an error),
+units. Nothing here imports ROS.
 
 """

@@ -8,8 +8,8 @@ from pathlib import Path
 import textwrap
 from typing import Any
 
-from surrogate.datasheet import key_of
 from surrogate.files import InputError, replace_file
+from surrogate.files.datasheet import key_of
 from surrogate.parameters import Lubricant, Screw
 import yaml
 

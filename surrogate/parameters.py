@@ -12,7 +12,8 @@ from dataclasses import asdict, dataclass, fields
 import math
 from typing import Any, ClassVar
 
-from surrogate.datasheet import (
+from surrogate.files import InputError
+from surrogate.files.datasheet import (
     block,
     check_likely,
     Checked,
@@ -24,8 +25,7 @@ from surrogate.datasheet import (
     read_sheet,
     text,
 )
-from surrogate.files import InputError
-from surrogate.limits import COLDEST, HOTTEST, LOAD, SPEED
+from surrogate.files.limits import COLDEST, HOTTEST, LOAD, SPEED
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.units import RPM, ZERO_CELSIUS

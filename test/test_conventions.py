@@ -61,7 +61,7 @@ WORDS = re.compile(r'[a-z]+[ :,]+[a-z]+[ :,]+[a-z]+|[a-z]: $')
 SHOWN = (
     'ballscrew_monitor/report/overview.py',
     'ballscrew_monitor/settings/parameters.py',
-    'surrogate/datasheet.py',
+    'surrogate/files/datasheet.py',
     'surrogate/identify/record.py',
     'surrogate/parameters.py',
 )
@@ -74,6 +74,7 @@ ROSDEP = {
 }
 # Tests of a whole folder instead of one of its files, by what they hold it against.
 THEMES = {
+    'surrogate/files/test_files.py',
     'bags/test_identity.py',
     'ballscrew_monitor/judge/test_edge_floats.py',
     'ballscrew_monitor/judge/test_golden.py',
@@ -415,7 +416,7 @@ def test_manifest_names_what_is_imported():
 
 
 def test_every_file_of_tests_is_collected():
-    """All but what makes the golden outputs, and records them."""
+    """All but what makes the golden outputs, and the friction that tests of a ball share."""
     golden = TREE / 'test' / 'golden'
     makers = {golden / 'record.py', *golden.glob('golden/*.py')}
     makers.add(TREE / 'test' / 'surrogate' / 'screw' / 'coulomb.py')

@@ -295,7 +295,11 @@ def law():
         (broken_links, '[a](CONTRIBUTING.md#rules)\n[b](CONTRIBUTING.md#laws)', [2]),
         (broken_links, '\n[a](#nothing)', [2]),
         (missing_paths, 'See `test/conftest.py`.\nSee surrogate/nothing.py', [2]),
-        (missing_functions, '`surrogate/files.py: InputError`\n`surrogate/files.py: Law`', [2]),
+        (
+            missing_functions,
+            '`surrogate/tasks/progress.py: Progress`\n`surrogate/tasks/progress.py: Law`',
+            [2],
+        ),
         (missing_functions, '`surrogate/nothing.py: law`', [1]),
         (missing_documents, f'# docs/README.md\n# docs/{"nothing"}.md', [2]),
         (unknown_options, 'ballscrew point --json\n`ballscrew point --xml`', [2]),

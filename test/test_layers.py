@@ -19,17 +19,17 @@ MODULES = {
 # What the offline half stands on, and where it is forbidden to be heavy.
 NUMERICAL = set('distributed matplotlib numba numpy scipy SurfaceTopography yaml'.split())
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
-TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.workers', 'surrogate.worker'}
+TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.workers', 'surrogate.tasks.worker'}
 LOOKUP = {
     'surrogate',
-    'surrogate.child',
     'surrogate.files',
-    'surrogate.limits',
-    'surrogate.plain_yaml',
-    'surrogate.store',
+    'surrogate.files.limits',
+    'surrogate.files.plain_yaml',
+    'surrogate.files.store',
     'surrogate.surface',
     'surrogate.surface.compiled',
     'surrogate.surface.records',
+    'surrogate.tasks.child',
     'surrogate.units',
 }
 
@@ -45,12 +45,8 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'progress', 'results'),
-    ('child',),
-    ('worker', 'store'),
-    ('limits',),
-    ('plain_yaml',),
-    ('datasheet', 'plotting'),
+    ('units', 'files', 'results'),
+    ('plotting',),
     ('raceway',),
     ('parameters', 'surface'),
     ('datasheet_writer', 'formulas', 'tasks'),
@@ -58,27 +54,19 @@ OFFLINE_FLOORS = (
     ('asperities',),
     ('catalogue', 'contact', 'screw'),
     ('builder',),
-    ('surface_tools', 'identify', 'studies', 'on_demand'),
+    ('surface_tools', 'identify', 'studies'),
     ('commands',),
-    ('cli',),
 )
 """Folders and single modules of the offline half, the lowest first."""
 STANDS_ON = {
     'surface': {
         'surrogate.files',
         'surrogate.formulas.torque',
-        'surrogate.limits',
+        'surrogate.files.limits',
         'surrogate.results',
         'surrogate.units',
     },
-    'tasks': {
-        'surrogate.child',
-        'surrogate.files',
-        'surrogate.progress',
-        'surrogate.store',
-        'surrogate.surface.file',
-        'surrogate.worker',
-    },
+    'tasks': {'surrogate.files', 'surrogate.files.store', 'surrogate.surface.file'},
 }
 """Folders that import these modules alone: what the node loads, and what knows no physics."""
 
@@ -149,19 +137,19 @@ def beyond_the_numerical_libraries(path, named):
 def beyond_the_lookup(path, named):
     """Only the command line, which is both halves, hands over to the offline one."""
     more = {
-        'cli.py': {'surrogate.cli', 'surrogate.parameters'},
-        'options.py': {'surrogate.cli'},
+        'cli.py': {'surrogate.commands.cli', 'surrogate.parameters'},
+        'options.py': {'surrogate.commands.cli'},
         # The bar of both halves, text alone.
-        'cycle': {'surrogate.progress'},
+        'cycle': {'surrogate.tasks.progress'},
         # Plain arithmetic of published laws.
         'health': {'surrogate.formulas.grades', 'surrogate.formulas.life'},
-        'recordings': {'surrogate.progress'},
+        'recordings': {'surrogate.tasks.progress'},
         # The page over many recordings, on the workers of the sweeps, and the style of pictures.
-        'report': {'surrogate.progress'} | PLOTTING | TASKS,
+        'report': {'surrogate.tasks.progress'} | PLOTTING | TASKS,
         # One command goes from logs by way of sheets and surfaces to a page.
         'check.py': {
             'surrogate.builder.tiers',
-            'surrogate.datasheet',
+            'surrogate.files.datasheet',
             'surrogate.parameters',
             'surrogate.surface.file',
         },
@@ -261,23 +249,28 @@ def test_no_import_is_relative():
 @pytest.mark.parametrize(
     ('check', 'module', 'text', 'lines'),
     [
-        (beyond_the_numerical_libraries, 'surrogate/cli.py', 'import rclpy', [1]),
+        (beyond_the_numerical_libraries, 'surrogate/commands/cli.py', 'import rclpy', [1]),
         (
             beyond_the_numerical_libraries,
             'surrogate/ehl/case.py',
             'import os\ndef f():\n    from ballscrew_monitor import cli',
             [3],
         ),
-        (beyond_the_numerical_libraries, 'surrogate/cli.py', 'from surrogate import files', []),
-        (beyond_the_lookup, 'ballscrew_monitor/core/a.py', 'import surrogate.cli', [1]),
-        (beyond_the_lookup, 'ballscrew_monitor/cli.py', 'import surrogate.cli', []),
+        (
+            beyond_the_numerical_libraries,
+            'surrogate/commands/cli.py',
+            'from surrogate import files',
+            [],
+        ),
+        (beyond_the_lookup, 'ballscrew_monitor/core/a.py', 'import surrogate.ehl.case', [1]),
+        (beyond_the_lookup, 'ballscrew_monitor/cli.py', 'import surrogate.commands.cli', []),
         (
             beyond_the_lookup,
             'ballscrew_monitor/node/a.py',
-            'from surrogate import units\nfrom surrogate import progress',
+            'from surrogate import units\nfrom surrogate.tasks import progress',
             [2],
         ),
-        (beyond_the_lookup, 'ballscrew_monitor/cycle/a.py', 'import surrogate.progress', []),
+        (beyond_the_lookup, 'ballscrew_monitor/cycle/a.py', 'import surrogate.tasks.progress', []),
         (upward, 'ballscrew_monitor/core/a.py', 'import ballscrew_monitor.judge.step', [1]),
         (upward, 'ballscrew_monitor/judge/a.py', 'import ballscrew_monitor.core.state', []),
         (upward, 'ballscrew_monitor/node/a.py', 'import ballscrew_monitor.report.page', [1]),
@@ -324,7 +317,7 @@ def test_judgement_health_and_store_load_no_messages():
     """Messages are a form that others read: nothing that decides or keeps is made of them."""
     rooms = ('core', 'judge', 'health')
     paths = [path for path in MODULES['ballscrew_monitor'] if room(name_of(path)) in rooms]
-    modules = [*map(name_of, paths), 'ballscrew_monitor.node.solver', 'surrogate.store']
+    modules = [*map(name_of, paths), 'ballscrew_monitor.node.solver', 'surrogate.files.store']
     loaded = loaded_by(f'import {", ".join(modules)}')
     assert not [name for name in loaded if name.split('.')[0].endswith('_msgs')]
 
@@ -347,9 +340,7 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     laws = 'surrogate.formulas.grades, surrogate.formulas.life'
-    rooms = ('child', 'plain_yaml', 'store', 'surface')
-    offline = ', '.join(f'surrogate.{room}' for room in rooms)
-    rooms = ('child', 'plain_yaml', 'store', 'surface')
+    rooms = ('files.plain_yaml', 'files.store', 'surface', 'tasks.child')
     offline = ', '.join(f'surrogate.{room}' for room in rooms)
     needed = loaded_by(f'import {offline}, {laws}')
     loaded = loaded_by('import ballscrew_monitor.node.run')

@@ -41,7 +41,7 @@ from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError, json_text, printable, replace_file
-from surrogate.store import opened_to_read, readable
+from surrogate.files.store import opened_to_read, readable
 from surrogate.units import MINUTE
 
 FAILURES = 'ballscrew_failure_*.txt'

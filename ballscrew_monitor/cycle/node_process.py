@@ -9,7 +9,7 @@ import signal
 import subprocess
 
 from ballscrew_monitor.settings.middleware import loopback
-from surrogate.child import path_to_this_code, start, stop, WHEEL_VARIABLES
+from surrogate.tasks.child import path_to_this_code, start, stop, WHEEL_VARIABLES
 
 PATIENCE = ((signal.SIGINT, 30.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))  # [s] after each
 

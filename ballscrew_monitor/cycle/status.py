@@ -8,8 +8,8 @@ import shutil
 from typing import TextIO
 
 from ballscrew_msgs.msg import BallScrewState, Finding
-from surrogate.progress import bar
 from surrogate.surface import REGIMES
+from surrogate.tasks.progress import bar
 from surrogate.units import RPM
 
 REGIME_WORDS = {int(regime): regime.word for regime in REGIMES}

@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from ballscrew_monitor.core.judgement import Code
-from surrogate.store import MAY_BE_NAN
+from surrogate.files.store import MAY_BE_NAN
 from surrogate.surface.records import dtype_of
 
 NAN = math.nan

@@ -19,7 +19,7 @@ from ballscrew_monitor.health.records import Baseline, Cell, KeptHealth, Spectru
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.summary import aged, by_place
 from surrogate.files import InputError
-from surrogate.store import opened_to_read, readable, SHARE, Store, Table
+from surrogate.files.store import opened_to_read, readable, SHARE, Store, Table
 
 FILE = 'health.sqlite3'
 VERSION = 1

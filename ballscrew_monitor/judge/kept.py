@@ -13,7 +13,7 @@ from ballscrew_monitor.core.state import Ending, NOT_SHELVED, RESTARTED, Shelvin
 from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.judge.zone import ACTIVE
 from surrogate.files import to_json
-from surrogate.limits import read_json
+from surrogate.files.limits import read_json
 
 MOST_EVENTS = 2**32 - 1  # what a message holds
 SUMS = 'running_time', 'unjudged_time', 'regime_time', 'zone_time', 'angle', 'energy_lost'

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 import threading
 from typing import Any
 
-from surrogate.child import result_apart
+from surrogate.tasks.child import result_apart
 
 COMPILED_FROM = 5000.0
 """Events of all inputs in a second [1/s] from which on turns are judged compiled."""

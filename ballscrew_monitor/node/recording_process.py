@@ -16,8 +16,8 @@ from typing import Any
 
 from ballscrew_monitor.node.restart_state import AUTO
 from ballscrew_monitor.recordings.frames import Frame, FrameSender
-from surrogate.child import one_thread_environment, start
 from surrogate.files import InputError
+from surrogate.tasks.child import one_thread_environment, start
 
 MODULE = 'ballscrew_monitor.recordings.retention'
 PIPE_SIZE = 2**20  # [B]

@@ -23,7 +23,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
-from surrogate.plain_yaml import plain_values
+from surrogate.files.plain_yaml import plain_values
 
 BAD_INPUT = 2
 NAME = 'localhost'

@@ -36,7 +36,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from surrogate.limits import COLDEST, HOTTEST, LOAD, SPEED
+from surrogate.files.limits import COLDEST, HOTTEST, LOAD, SPEED
 from surrogate.surface import FIELDS, solved_point, SurfacePoint
 from surrogate.units import RPM
 

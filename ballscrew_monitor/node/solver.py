@@ -17,9 +17,9 @@ import functools
 import math
 from typing import Any
 
-from surrogate.child import Frame, Worker, Workers
+from surrogate.tasks.child import Frame, Worker, Workers
 
-TASK = 'surrogate.on_demand:solve'
+TASK = 'surrogate.builder.on_demand:solve'
 NICENESS = 10
 MEMORY = 6 * 2**30
 """Most memory that the worker may use [B]."""

@@ -29,7 +29,7 @@ from ballscrew_monitor.node.state_records import (
     TABLES,
 )
 from surrogate.files import InputError
-from surrogate.store import identity, opened_to_read, plain_text, SHARE, size_of, Store
+from surrogate.files.store import identity, opened_to_read, plain_text, SHARE, size_of, Store
 
 FILE, LOCK = 'state.sqlite3', 'lock'
 VERSION = 1

@@ -20,8 +20,8 @@ from ballscrew_monitor.judge.views import total_times
 from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.messages.state_messages import event_cause
 from surrogate.files import InputError, to_json
-from surrogate.limits import read_json
-from surrogate.store import Table
+from surrogate.files.limits import read_json
+from surrogate.files.store import Table
 from surrogate.units import TURN
 
 SOLVE = {

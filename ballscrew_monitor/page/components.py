@@ -11,7 +11,7 @@ import functools
 from importlib import resources
 
 from ballscrew_monitor.report.page import component, element, UPLOT_CSS, UPLOT_JS
-from surrogate.limits import read_json
+from surrogate.files.limits import read_json
 
 ROOM = resources.files('ballscrew_monitor.page')
 SHARED = {

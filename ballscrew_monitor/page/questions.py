@@ -14,7 +14,7 @@ from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.hub import Browser
 from ballscrew_monitor.page.phrases import free, phrase, Refused
 from surrogate.files import InputError
-from surrogate.limits import read_json
+from surrogate.files.limits import read_json
 
 LOG = logging.getLogger(__name__)
 LARGEST = 4000  # [byte] of a request

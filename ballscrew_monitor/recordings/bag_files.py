@@ -8,8 +8,8 @@ import re
 import shlex
 
 from surrogate.files import InputError
-from surrogate.limits import read_text
-from surrogate.plain_yaml import plain_values
+from surrogate.files.limits import read_text
+from surrogate.files.plain_yaml import plain_values
 
 MAGIC = {
     b'\x89MCAP': 'mcap',

@@ -32,7 +32,7 @@ from ballscrew_monitor.recordings.bulk.events import blank, Events, Notes, TICK_
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
-from surrogate.limits import read_json
+from surrogate.files.limits import read_json
 
 ENCAPSULATION = b'\0\1\0\0'  # little-endian CDR
 HEAD = struct.Struct('<IIQ')  # versions of events and memory, number of the message

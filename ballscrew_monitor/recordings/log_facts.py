@@ -14,7 +14,7 @@ from ballscrew_monitor.recordings.recorded_events import events_topic, recorded_
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
 from surrogate.files import InputError
-from surrogate.plain_yaml import plain_values
+from surrogate.files.plain_yaml import plain_values
 import yaml
 
 PREFIX = 'ballscrew_monitor.'

@@ -20,7 +20,7 @@ from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from mcap.summary import Summary
-from surrogate import limits
+from surrogate.files import limits
 from zstandard import ZstdError
 
 # What the reader is known to raise for a file that is not as it should be.

@@ -29,7 +29,7 @@ from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis, load_surface, settings_of
 import numpy as np
 from surrogate.files import InputError
-from surrogate.limits import read_json
+from surrogate.files.limits import read_json
 from surrogate.surface import Surface, SurfaceError
 
 READING = (

@@ -18,7 +18,7 @@ from ballscrew_monitor.recordings.mcap_records import RecordDamage, whole_record
 from mcap.records import Channel, Metadata, Schema
 from mcap.records import Message as McapMessage
 from surrogate.files import InputError
-from surrogate.plain_yaml import plain_values
+from surrogate.files.plain_yaml import plain_values
 
 SUFFIX = '.mcap'
 OTHERS = {

@@ -17,9 +17,8 @@ import sqlite3
 from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 from ballscrew_monitor.recordings.unpacking import scratch_folder
-from surrogate import limits
-from surrogate.files import InputError
-from surrogate.store import size_of
+from surrogate.files import InputError, limits
+from surrogate.files.store import size_of
 
 HEADER = 100  # [bytes] of a file, with the size of its pages
 MESSAGES = f"""

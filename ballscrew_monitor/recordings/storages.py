@@ -35,8 +35,7 @@ from ballscrew_monitor.recordings.mcap_records import (
 from ballscrew_monitor.recordings.unpacking import Unpackable, unpacked
 from mcap.records import Channel, ChunkIndex, Schema
 from mcap.records import Message as McapMessage
-from surrogate import limits
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
 
 MCAP = next(magic for magic, kind in MAGIC.items() if kind == 'mcap')
 REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed

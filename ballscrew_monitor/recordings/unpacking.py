@@ -8,8 +8,7 @@ import shutil
 import tempfile
 import weakref
 
-from surrogate import limits
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
 import zstandard
 
 BLOCK = 1 << 20  # [bytes] that are unpacked at a time

@@ -10,7 +10,7 @@ import sys
 import time
 
 from surrogate.files import printable
-from surrogate.progress import Progress
+from surrogate.tasks.progress import Progress
 
 NONE = '–'
 TURNS = re.compile(r'(?:\S+ rad/s \()?(-?[\d.]+(?:e[+-]?\d+)?) rev/min\)?')

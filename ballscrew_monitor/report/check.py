@@ -40,11 +40,11 @@ from ballscrew_monitor.report.logs import find_logs, folder_names, left_out
 from ballscrew_monitor.report.many_logs import Given, INDEX, report_each, Workers
 from ballscrew_monitor.report.overview import overview_page, with_usual
 from ballscrew_monitor.report.parameters import parameters_for
-from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
+from surrogate.files.datasheet import key_of, read_yaml
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
-from surrogate.progress import Progress
 from surrogate.surface import shipped_surface, Surface, SurfaceError
+from surrogate.tasks.progress import Progress
 from surrogate.units import MILLI
 
 MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'

@@ -23,9 +23,9 @@ from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.many_logs import run_mapped, Workers
 from ballscrew_monitor.settings.axis import load_surface, settings_of
 from surrogate.files import InputError, to_json
-from surrogate.progress import Progress
 from surrogate.surface import Surface
 from surrogate.tasks.pool import TaskOutcome
+from surrogate.tasks.progress import Progress
 
 Inputs = dict[str, Any]
 

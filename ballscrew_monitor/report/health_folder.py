@@ -27,7 +27,7 @@ from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.report.health_history import AxisHistory
 import polars as pl
 from surrogate.files import InputError, new_file, to_json
-from surrogate.limits import MEGA
+from surrogate.files.limits import MEGA
 
 VERSION = 1
 """Version of what is collected; logs of another one are collected again."""

@@ -19,11 +19,11 @@ from ballscrew_monitor.report.logs import folder_names, map_for
 from ballscrew_monitor.report.overview import overview_page
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from surrogate.files import InputError, replace_file, to_json
-from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 from surrogate.tasks.pool import run_tasks, TaskOutcome
+from surrogate.tasks.progress import Progress
+from surrogate.tasks.worker import tell_share
 from surrogate.tasks.workers import ignore, open_pool
-from surrogate.worker import tell_share
 
 INDEX = 'index.html'
 READING = 0.5  # of the work on a table, before it is judged

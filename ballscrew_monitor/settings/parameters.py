@@ -16,8 +16,7 @@ from typing import Any
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
 from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, LOAD_SOURCES, NODE_ROWS
-from surrogate import limits
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
 
 NODE_NAME = 'ballscrew_monitor'
 REFUSALS = 'solve_rejected'
@@ -169,7 +168,7 @@ def _text_of(path: str | pathlib.Path) -> str:
 
 
 def _sections(text: str) -> dict[str, Any]:
-    from surrogate.plain_yaml import plain_values  # the node is handed its parameters by ROS
+    from surrogate.files.plain_yaml import plain_values  # the node is handed its parameters by ROS
 
     try:
         nodes = plain_values(text, change=_take_letters_as_ros)

@@ -24,13 +24,13 @@ from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.shaft import service_of
 from surrogate.formulas.sliding import largest_sliding
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
-from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import kept_point
 from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
+from surrogate.tasks.progress import OnProgress
 from surrogate.units import ZERO_CELSIUS
 
 Array = NDArray[np.float64]

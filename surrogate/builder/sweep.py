@@ -19,8 +19,8 @@ from typing import Any
 
 from surrogate.builder.closed_form import build_closed_form, SurfaceSettings
 from surrogate.builder.tiers import build_surface, check_tier, default_settings, spreads
-from surrogate.datasheet import changed_sheet, read_yaml
 from surrogate.files import InputError
+from surrogate.files.datasheet import changed_sheet, read_yaml
 from surrogate.parameters import (
     check_waves,
     load_lubricant,
@@ -32,8 +32,8 @@ from surrogate.parameters import (
 )
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
+from surrogate.tasks.worker import describe_failure, worker_name
 from surrogate.units import RPM, ZERO_CELSIUS
-from surrogate.worker import describe_failure, worker_name
 
 RANGES = {
     'speed_range_rpm': ('speed_range', RPM, 0.0),

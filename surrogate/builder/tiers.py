@@ -14,10 +14,10 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
-from surrogate.progress import OnProgress
 from surrogate.surface.file import SurfaceData, TIERS
 from surrogate.surface.solved import SolvedPoint
 from surrogate.tasks.pool import Pool
+from surrogate.tasks.progress import OnProgress
 
 
 def check_tier(tier: str) -> None:

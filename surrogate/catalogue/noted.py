@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
-from surrogate.datasheet import key_of
+from surrogate.files.datasheet import key_of
 
 Sheet = TypeVar('Sheet')
 DIGITS = 4

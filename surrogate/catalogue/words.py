@@ -5,8 +5,8 @@
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar
 
-from surrogate.datasheet import Checked, choice, count, key_of, quantity, text
 from surrogate.files import InputError
+from surrogate.files.datasheet import Checked, choice, count, key_of, quantity, text
 from surrogate.parameters import NAME, NUTS
 from surrogate.units import MILLI
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from surrogate.commands.output import add_json, show
 from surrogate.files import InputError
-from surrogate.progress import Progress
+from surrogate.tasks.progress import Progress
 
 
 def add_contact_command(subparsers: Any) -> None:

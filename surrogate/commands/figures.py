@@ -10,8 +10,8 @@ from typing import Any
 
 from surrogate.commands.sweep import add_workers
 from surrogate.files import InputError, replace_file
-from surrogate.progress import Progress
 from surrogate.studies.tasks import FIGURES, tasks
+from surrogate.tasks.progress import Progress
 
 DRAWS = 12
 """Draws of the contacts unless said otherwise [-]."""

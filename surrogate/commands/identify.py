@@ -13,7 +13,7 @@ from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
-from surrogate.progress import Progress
+from surrogate.tasks.progress import Progress
 from surrogate.units import ZERO_CELSIUS
 
 FITTED = {'viscosity': 'viscosity_factor', 'asperity_friction': 'asperity_friction'}

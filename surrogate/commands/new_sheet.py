@@ -12,8 +12,8 @@ from typing import Any
 
 from surrogate.catalogue.words import CatalogueOil, CatalogueScrew, flag_of
 from surrogate.commands.output import tell
-from surrogate.datasheet import key_of, sheet_of
 from surrogate.files import InputError
+from surrogate.files.datasheet import key_of, sheet_of
 
 SHEETS = {
     'screw': (CatalogueScrew, 'make the sheet of a screw out of a catalogue'),

@@ -19,9 +19,9 @@ from surrogate.parameters import (
     Screw,
     screw_and_oil,
 )
-from surrogate.progress import Progress
 from surrogate.surface.file import read
 from surrogate.surface.shipped import SHIPPED_TIERS
+from surrogate.tasks.progress import Progress
 from surrogate.units import RPM, ZERO_CELSIUS
 
 FULL_ONLY = ('kinematics', 'plot')

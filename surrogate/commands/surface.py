@@ -19,10 +19,10 @@ from surrogate.commands.surface_inspect import add_file, add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
 from surrogate.parameters import is_shipped, Lubricant, screw_and_oil
-from surrogate.progress import Progress
 from surrogate.surface import find_surface, onset_of_surface, Surface
 from surrogate.surface.file import read, TIERS, write
 from surrogate.surface.shipped import SHIPPED_TIERS
+from surrogate.tasks.progress import Progress
 from surrogate.units import RPM, ZERO_CELSIUS
 
 HALF_KELVIN, HELD_OUT = 0.5, 20

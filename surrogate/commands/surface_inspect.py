@@ -13,12 +13,12 @@ from surrogate.builder.tiers import spreads
 from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_operating_point
 from surrogate.files import InputError, replace_file
-from surrogate.limits import read_text, TABLE
+from surrogate.files.limits import read_text, TABLE
 from surrogate.parameters import OperatingPoint
-from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import read
+from surrogate.tasks.progress import Progress
 from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 

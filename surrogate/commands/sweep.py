@@ -40,7 +40,7 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
 def _sweep(args: argparse.Namespace) -> int:
     from surrogate.builder.sweep import Built, load_catalogue, sweep
     from surrogate.builder.sweep_report import JSON_NAME, PAGE_NAME, SweepReport
-    from surrogate.progress import Progress
+    from surrogate.tasks.progress import Progress
     from surrogate.tasks.workers import open_pool
 
     items = load_catalogue(args.catalogue)

@@ -11,7 +11,10 @@ optional. The roughness stands still in the contact, or rolls through it.
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from surrogate.datasheet import (
+from surrogate.ehl import Condition, ContactLubricant
+from surrogate.ehl.interface import LARGEST_GRID, Law
+from surrogate.files import InputError
+from surrogate.files.datasheet import (
     block,
     Checked,
     choice,
@@ -23,9 +26,6 @@ from surrogate.datasheet import (
     same,
     text,
 )
-from surrogate.ehl import Condition, ContactLubricant
-from surrogate.ehl.interface import LARGEST_GRID, Law
-from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
 from surrogate.raceway.fractal import Lay, PublishedRoughness
 from surrogate.raceway.measured import Outside

@@ -31,12 +31,12 @@ from surrogate.identify.model import (
     VISCOSITY_BOUNDS,
 )
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import ScrewPoint
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
+from surrogate.tasks.progress import OnProgress
 from surrogate.units import digits, RPM
 
 NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 10, 5, 10

@@ -16,8 +16,8 @@ from typing import get_args, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.datasheet import Checked, count, quantity
 from surrogate.files import InputError
+from surrogate.files.datasheet import Checked, count, quantity
 from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane
 
 Array = NDArray[np.float64]

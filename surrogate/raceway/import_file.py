@@ -19,7 +19,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
-from surrogate.limits import read_text, TABLE
+from surrogate.files.limits import read_text, TABLE
 from surrogate.raceway.measured import measured_surface, MeasuredSurface, Outside
 
 Array = NDArray[np.float64]

@@ -14,8 +14,8 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.datasheet import Checked, choice, count, quantity
 from surrogate.files import InputError
+from surrogate.files.datasheet import Checked, choice, count, quantity
 from surrogate.raceway.fractal import DIMENSIONS, Lay, wave_directions
 from surrogate.raceway.standards import (
     CUTOFF_SHORT,

@@ -6,8 +6,8 @@ from dataclasses import dataclass, fields
 import math
 from typing import ClassVar, Literal
 
-from surrogate.datasheet import check_likely, Checked, choice, quantity, text
 from surrogate.files import InputError
+from surrogate.files.datasheet import check_likely, Checked, choice, quantity, text
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.raceway.standards import BALL_RA, ball_rms
 from surrogate.units import GIGA

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from surrogate.files import InputError
 from surrogate.formulas import torque
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.onset_bands import bands_of, spread
 from surrogate.screw.opened import Contacts
@@ -19,6 +18,7 @@ from surrogate.screw.uncertain_inputs import INPUTS, ScrewCase, Varied
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.contact_onset import law_doubt
 from surrogate.surface.lookup import both_bands
+from surrogate.tasks.progress import OnProgress
 from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]

@@ -22,11 +22,11 @@ from matplotlib.lines import Line2D
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from surrogate.asperities.law import AsperityLaw
+from surrogate.files.limits import read_text
+from surrogate.files.plain_yaml import plain_values
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.torque import efficiency
-from surrogate.limits import read_text
 from surrogate.parameters import load_screw, Screw
-from surrogate.plain_yaml import plain_values
 from surrogate.plotting.style import BLUE, GREEN, GREY, new_figure, PURPLE, VERMILION
 from surrogate.screw.record import CONSTANT_FRICTION
 from surrogate.studies import curves, tasks

@@ -20,6 +20,8 @@ from surrogate.asperities.running_in import running_tiles
 from surrogate.catalogue.screw import typical_drag
 from surrogate.ehl import Condition, Settings, solve_contact
 from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
+from surrogate.files.limits import read_text
+from surrogate.files.plain_yaml import plain_values
 from surrogate.formulas import film, torque
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.line import (
@@ -29,9 +31,7 @@ from surrogate.formulas.line import (
     moes_line,
 )
 from surrogate.formulas.load_sharing import normal_force
-from surrogate.limits import read_text
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
-from surrogate.plain_yaml import plain_values
 from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
 from surrogate.screw.opened import Contacts

@@ -22,8 +22,7 @@ import zlib
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate import limits
-from surrogate.files import canonical_json, replace_file
+from surrogate.files import canonical_json, limits, replace_file
 from surrogate.surface.fields import FIELDS
 
 Array = NDArray[np.float64]

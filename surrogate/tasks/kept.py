@@ -7,9 +7,9 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from surrogate.child import Task
-from surrogate.progress import Progress
+from surrogate.tasks.child import Task
 from surrogate.tasks.pool import run_tasks, TaskOutcome
+from surrogate.tasks.progress import Progress
 from surrogate.tasks.store import TaskStore
 from surrogate.tasks.workers import open_pool
 

@@ -14,9 +14,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, Self
 
-from surrogate.child import Frame, Task
+from surrogate.tasks.child import Frame, Task
 from surrogate.tasks.store import task_key, TaskStore
-from surrogate.worker import task_name
+from surrogate.tasks.worker import task_name
 
 MOST_TRIES = 3
 """How often a task is begun whose worker is lost each time [-]."""

@@ -20,7 +20,7 @@ import sys
 from typing import Any, Self
 
 from surrogate.files import canonical_json
-from surrogate.store import (
+from surrogate.files.store import (
     BAD,
     is_passing,
     OtherVersion,
@@ -31,7 +31,7 @@ from surrogate.store import (
     Table,
 )
 from surrogate.surface.file import SurfaceError
-from surrogate.worker import plain_result
+from surrogate.tasks.worker import plain_result
 
 VERSION = 1
 ENDING = '.store'

@@ -16,11 +16,11 @@ import sys
 from typing import Any, Self
 import uuid
 
-from surrogate.child import Frame, one_thread_environment, path_to_this_code, Worker, Workers
 from surrogate.files import InputError
 from surrogate.surface.file import SurfaceError
+from surrogate.tasks.child import Frame, one_thread_environment, path_to_this_code, Worker, Workers
 from surrogate.tasks.pool import Pool
-from surrogate.worker import describe_failure, listener, run_task, ShareTeller, worker_name
+from surrogate.tasks.worker import describe_failure, listener, run_task, ShareTeller, worker_name
 
 LOCAL = 'local'
 """The word for a Dask cluster on this machine."""

@@ -44,9 +44,9 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from rosidl_parser import definition
 from sensor_msgs.msg import JointState
-from surrogate.child import path_to_this_code, WORKER
 from surrogate.surface import file as surface_file
 from surrogate.surface import Found, shipped_surface
+from surrogate.tasks.child import path_to_this_code, WORKER
 from surrogate.units import TURN
 import yaml
 

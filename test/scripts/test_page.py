@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 import pytest
-from surrogate.child import path_to_this_code
+from surrogate.tasks.child import path_to_this_code
 
 TREE = Path(__file__).resolve().parents[2]
 DEADLINE = 600.0  # [s] which only ends a hang

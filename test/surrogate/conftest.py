@@ -12,7 +12,7 @@ import pytest
 from surrogate.asperities import running_in
 from surrogate.asperities.topography_onset import onset_of
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.cli import add_commands, Parser
+from surrogate.commands.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts

@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Integers, Mess
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
 from mcap.records import ChunkIndex
 import numpy as np
-from surrogate import limits
+from surrogate.files import limits
 
 BATCH = 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together

@@ -27,7 +27,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.records import Chunk, ChunkIndex
 import numpy as np
 from numpy.typing import NDArray
-from surrogate import limits
+from surrogate.files import limits
 from surrogate.surface.compiled import compiled
 
 Integers = NDArray[np.int64]

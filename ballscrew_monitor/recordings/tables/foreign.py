@@ -27,8 +27,7 @@ from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
 from polars.exceptions import PolarsError
-from surrogate import limits
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
 
 OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 """Units of signals of a data recorder, which its file does not state."""

@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit, words_of
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
-from surrogate import limits
+from surrogate.files import limits
 
 COMMENT = '#'
 SEPARATORS = (';', '\t', '|', ',')

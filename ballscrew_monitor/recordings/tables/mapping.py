@@ -33,8 +33,8 @@ from ballscrew_monitor.recordings.tables.quantities import (
 from ballscrew_monitor.recordings.words import short
 from ballscrew_monitor.settings.parameters import check_axes, MOTOR_TORQUE
 from surrogate.files import InputError
-from surrogate.limits import read_text
-from surrogate.plain_yaml import plain_values
+from surrogate.files.limits import read_text
+from surrogate.files.plain_yaml import plain_values
 from surrogate.units import MICRO, MILLI
 
 DERIVED = ('current', 'torque', 'motor_torque')

@@ -30,9 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 import polars as pl
 from polars.exceptions import PolarsError
-from surrogate import limits
-from surrogate.child import result_apart
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
+from surrogate.tasks.child import result_apart
 
 HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 2000  # of a table that tell where its numbers begin

@@ -28,9 +28,8 @@ from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import holds_numbers, Line
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
-from surrogate import limits
-from surrogate.child import result_apart
-from surrogate.files import InputError
+from surrogate.files import InputError, limits
+from surrogate.tasks.child import result_apart
 
 CELL_SIZE = limits.XLSX_CELL
 LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table

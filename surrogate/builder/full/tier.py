@@ -17,13 +17,13 @@ from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain
 from surrogate.builder.full.march import march_task, march_tasks, marched_film
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
-from surrogate.child import Task
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
-from surrogate.progress import Progress
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
+from surrogate.tasks.child import Task
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
+from surrogate.tasks.progress import Progress
 from surrogate.tasks.store import TaskStore
 from surrogate.units import digits, RPM, ZERO_CELSIUS
 

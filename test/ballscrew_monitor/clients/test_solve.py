@@ -15,7 +15,7 @@ from ballscrew_monitor.clients import solve
 from ballscrew_monitor.clients.solve import _Conversation, Question
 import pytest
 from rclpy.task import Future
-from surrogate.child import one_thread_environment
+from surrogate.tasks.child import one_thread_environment
 
 SCRIPT = Path(sys.executable).with_name('ballscrew')
 DEADLINE = 600.0  # [s] which only ends a hang

@@ -16,7 +16,7 @@ from ballscrew_monitor.settings.middleware import loopback
 from ballscrew_monitor.settings.qos import started_node
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
-from surrogate.child import WHEEL_VARIABLES
+from surrogate.tasks.child import WHEEL_VARIABLES
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'

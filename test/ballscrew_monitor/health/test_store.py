@@ -20,7 +20,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
-from surrogate.store import Store
+from surrogate.files.store import Store
 
 YEARS = 10
 PLACES = {1: 60, 7: 120, 28: 240}

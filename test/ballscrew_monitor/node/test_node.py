@@ -36,8 +36,8 @@ from rclpy.clock import ClockType
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
-from surrogate import child
 from surrogate.surface import shipped_surface, Surface
+from surrogate.tasks import child
 
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
 # The stamps of a test run ahead of the clock, and a busy machine makes no sample stale.

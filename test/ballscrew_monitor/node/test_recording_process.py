@@ -11,7 +11,7 @@ from ballscrew_monitor.node import recording_process
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from ballscrew_monitor.settings import parameters
-from surrogate import child
+from surrogate.tasks import child
 
 SETTINGS = {
     'always': True,

@@ -12,7 +12,7 @@ from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, sta
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import Corrections, entry_of, Kind
 import pytest
-from surrogate import store
+from surrogate.files import store
 
 SOLVES = '[' + ' ' * 998 + ']'
 

@@ -23,7 +23,7 @@ from ballscrew_monitor.node.solver import (
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.child import one_thread_environment
+from surrogate.tasks.child import one_thread_environment
 
 BAD_REQUEST = {'point': {}}
 
@@ -78,7 +78,7 @@ def test_it_holds_nothing_of_ros_and_runs_nicely_in_bounded_memory(asked):
 
 
 def test_what_the_worker_imports_is_the_offline_half_alone():
-    code = 'import surrogate.worker, surrogate.on_demand, sys; print(*sys.modules)'
+    code = 'import surrogate.tasks.worker, surrogate.builder.on_demand, sys; print(*sys.modules)'
     done = subprocess.run(
         [sys.executable, '-P', '-c', code],
         env=one_thread_environment(),

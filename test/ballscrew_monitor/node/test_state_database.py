@@ -13,8 +13,7 @@ from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import by_key, Corrections, entry_of, Kind
 import pytest
-from surrogate import store
-from surrogate.files import InputError
+from surrogate.files import InputError, store
 
 LIMIT = 400_000  # [B]
 LESS_THAN_NOTHING = """UPDATE axes SET memory = '{"running_time": -1}'"""

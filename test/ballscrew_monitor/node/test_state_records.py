@@ -25,7 +25,7 @@ from ballscrew_monitor.node.state_records import (
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.store import Store
+from surrogate.files.store import Store
 
 SOLVE = types.SimpleNamespace(
     speed=0.1 + 0.2, opposing_load=-1e3, temperature=313.15, solved={'rcs': 1 / 3}

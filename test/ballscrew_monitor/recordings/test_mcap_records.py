@@ -15,7 +15,7 @@ from ballscrew_monitor.recordings.mcap_records import (
 from mcap.records import Message
 from mcap.writer import CompressionType, IndexType, Writer
 import pytest
-from surrogate import limits
+from surrogate.files import limits
 
 COUNT = 200
 

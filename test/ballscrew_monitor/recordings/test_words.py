@@ -8,7 +8,7 @@ from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.recordings import words
 from ballscrew_monitor.recordings.words import shown_progress
 import pytest
-from surrogate.progress import Progress
+from surrogate.tasks.progress import Progress
 from surrogate.units import RPM
 
 

@@ -35,7 +35,7 @@ from rclpy.subscription import Subscription
 from rclpy.time import Time
 from rclpy.timer import Timer
 from rclpy.waitable import Waitable
-from surrogate.child import WORKER
+from surrogate.tasks.child import WORKER
 
 SECOND = 10**9  # [ns]
 DEADLINE = 600.0  # [s] which only ends a hang

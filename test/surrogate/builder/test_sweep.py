@@ -18,7 +18,7 @@ from surrogate.builder.sweep import load_catalogue
 from surrogate.parameters import DATA
 from surrogate.surface import Surface
 from surrogate.surface.file import read
-from surrogate.worker import worker_name
+from surrogate.tasks.worker import worker_name
 
 COMMAND = ('surface', 'sweep')
 

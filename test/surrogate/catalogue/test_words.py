@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import pytest
 from surrogate.catalogue.words import CatalogueOil, CatalogueScrew, flag_of
-from surrogate.datasheet import sheet_of
+from surrogate.files.datasheet import sheet_of
 
 ENOUGH = {
     'nominal_diameter_mm': 20.0,

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate import limits
+from surrogate.files import limits
 from surrogate.surface import file, shipped_surface
 
 CLOSED_FORM = shipped_surface(tier='closed_form')

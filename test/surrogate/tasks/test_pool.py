@@ -14,13 +14,13 @@ import sys
 import threading
 
 import pytest
-from surrogate import child
 from surrogate.surface import SurfaceError
+from surrogate.tasks import child
 from surrogate.tasks import workers as task_workers
 from surrogate.tasks.pool import MOST_TRIES, run_tasks
 from surrogate.tasks.store import TaskStore
+from surrogate.tasks.worker import worker_name
 from surrogate.tasks.workers import open_pool
-from surrogate.worker import worker_name
 
 DEADLINE = 600.0  # [s] which only ends a hang
 HALF_MADE = '.half_made'
@@ -31,7 +31,7 @@ HALF_MADE = {HALF_MADE!r}
     + """
 import fcntl, math, os, signal
 from surrogate.files import InputError
-from surrogate.worker import tell_share
+from surrogate.tasks.worker import tell_share
 
 def root(inputs):
     return {'root': math.sqrt(inputs['x']), 'chain': [math.exp(-inputs['x']), 1]}
@@ -335,7 +335,7 @@ def parent(tmp_path, tasks, pipes):
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
     path = os.pathsep.join(
-        [str(Path(tasks.__file__).parent), str(Path(child.__file__).parents[1])]
+        [str(Path(tasks.__file__).parent), str(Path(child.__file__).parents[2])]
     )
     with subprocess.Popen(
         [sys.executable, str(script), *pipes.values()],

@@ -12,7 +12,7 @@ import numpy as np
 import openpyxl
 import polars as pl
 import pytest
-from surrogate import limits
+from surrogate.files import limits
 
 ROWS = [
     ['Maschine', 'DMU 50', '', ''],

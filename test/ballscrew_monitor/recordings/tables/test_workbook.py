@@ -18,7 +18,7 @@ from ballscrew_monitor.recordings.tables.workbook import read_sheet, write_cells
 import openpyxl
 import polars as pl
 import pytest
-from surrogate import limits
+from surrogate.files import limits
 
 ROWS = [('t', 'v'), ('0', '3'), ('0.1', '4'), ('0.2', '5')]
 FAR = '<row r="1048576"><c r="Z1048576"><v>1</v></c></row>'

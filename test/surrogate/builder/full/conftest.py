@@ -5,7 +5,7 @@
 import math
 
 import pytest
-from surrogate.worker import run_task
+from surrogate.tasks.worker import run_task
 
 
 @pytest.fixture

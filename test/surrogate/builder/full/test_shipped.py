@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.builder.full.chain import chain_inputs, solve_chain
-from surrogate.datasheet import DATA as DATA_FOLDER
+from surrogate.files.datasheet import DATA as DATA_FOLDER
 from surrogate.parameters import load_screw
 from surrogate.surface import find_surface, Surface, Validity
 from surrogate.surface.file import read

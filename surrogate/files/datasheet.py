@@ -15,10 +15,10 @@ import re
 from typing import Any, ClassVar, TypeVar
 
 from surrogate.files import InputError
-from surrogate.limits import read_text
-from surrogate.plain_yaml import plain_values
+from surrogate.files.limits import read_text
+from surrogate.files.plain_yaml import plain_values
 
-DATA = Path(__file__).parent / 'data'
+DATA = Path(__file__).parents[1] / 'data'
 
 Sheet = TypeVar('Sheet')
 

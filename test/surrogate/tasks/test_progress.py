@@ -7,7 +7,7 @@ import itertools
 import sys
 
 import pytest
-from surrogate.progress import bar, Progress
+from surrogate.tasks.progress import bar, Progress
 
 
 class Terminal(io.StringIO):

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 import pytest
-from surrogate.child import (
+from surrogate.tasks.child import (
     one_thread_environment,
     path_to_this_code,
     result_apart,
@@ -20,7 +20,7 @@ from surrogate.child import (
 )
 
 DEADLINE = 600.0  # [s] which only ends a hang
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WAITS = """
 import signal, sys
 print('here', flush=True)
@@ -50,7 +50,7 @@ def fill(inputs):
 """
 PARENT = """
 import subprocess, sys
-from surrogate.child import start, Workers
+from surrogate.tasks.child import start, Workers
 child = start('waits', stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
 child.stdout.readline()
 with Workers(1) as workers:

@@ -5,7 +5,7 @@
 import json
 
 import pytest
-from surrogate import limits
+from surrogate.files import limits
 
 
 def test_a_text_is_read_to_its_last_allowed_character(tmp_path, refused):

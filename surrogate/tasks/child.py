@@ -32,7 +32,7 @@ ONE_THREAD = ('MKL_NUM_THREADS', 'NUMBA_NUM_THREADS', 'OMP_NUM_THREADS', 'OPENBL
 # Set by the ROS wheels for their own process; a child finds its libraries itself.
 WHEEL_VARIABLES = ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
 PR_SET_PDEATHSIG = 1
-WORKER = 'surrogate.worker'
+WORKER = 'surrogate.tasks.worker'
 UNWIND = 5.0
 """Longest time that a task has to put things in order when its worker is ended [s]."""
 PATIENCE = 2.0
@@ -47,7 +47,7 @@ Task = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 def path_to_this_code(more: Iterable[str] | None = None) -> str:
     """Return a PYTHONPATH: the folder of both packages, then `more` or that of this process."""
-    folder = str(Path(__file__).parents[1])
+    folder = str(Path(__file__).parents[2])
     more = [os.environ.get('PYTHONPATH', '')] if more is None else more
     return os.pathsep.join(filter(None, dict.fromkeys([folder, *more])))
 

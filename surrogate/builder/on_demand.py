@@ -22,7 +22,7 @@ from surrogate.screw import solve_screw
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import kept_point
 from surrogate.surface import SolvedPoint
-from surrogate.worker import cancelled, tell
+from surrogate.tasks.worker import cancelled, tell
 
 CONTACTS = 4
 """Contacts of a point: both nuts with screw and nut [-]."""

@@ -7,13 +7,13 @@ import re
 
 import pytest
 from surrogate.builder.full.tier import solve_full
-from surrogate.on_demand import Cancelled, solve, solve_point
+from surrogate.builder.on_demand import Cancelled, solve, solve_point
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import FIELDS
-from surrogate.worker import cancelled, listener, plain_result, run_task
+from surrogate.tasks.worker import cancelled, listener, plain_result, run_task
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 OPENED = Contacts.of(SCREW)
@@ -84,7 +84,7 @@ def test_a_solve_that_does_not_converge_is_a_status(monkeypatch):
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
     alone = solve_screw(OPENED, OIL, point, settings=ScrewSettings(kinematics='smooth'))
     stalled = replace(alone, converged=False, status='Stalled.')
-    monkeypatch.setattr('surrogate.on_demand.solve_screw', lambda *given, **how: stalled)
+    monkeypatch.setattr('surrogate.builder.on_demand.solve_screw', lambda *given, **how: stalled)
     found = solve_point(request())
     assert (found.converged, found.status) == (False, 'Stalled.')
 
@@ -101,11 +101,12 @@ def test_a_worker_tells_its_steps_and_is_taken_back_in_the_middle(monkeypatch):
     assert result == asdict(solve_point(request()))
     assert told[0]['fraction'] == 0.0
     monkeypatch.setattr(cancelled, 'is_set', lambda: True)
-    assert run_task('surrogate.on_demand:solve', request())['sentence'].startswith('Cancelled')
+    answer = run_task('surrogate.builder.on_demand:solve', request())
+    assert answer['sentence'].startswith('Cancelled')
 
     def starve(*given, **how):
         raise MemoryError
 
-    monkeypatch.setattr('surrogate.on_demand.solve_screw', starve)
-    sentence = run_task('surrogate.on_demand:solve', request())['sentence']
+    monkeypatch.setattr('surrogate.builder.on_demand.solve_screw', starve)
+    sentence = run_task('surrogate.builder.on_demand:solve', request())['sentence']
     assert re.fullmatch(r'the solve needs more than \S+ GiB of memory', sentence)

@@ -12,7 +12,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.worker import listener, plain_result, run_task, ShareTeller, task_name, tell_share
+from surrogate.tasks.worker import (
+    listener,
+    plain_result,
+    run_task,
+    ShareTeller,
+    task_name,
+    tell_share,
+)
 
 PLAIN = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
@@ -20,7 +27,7 @@ PLAIN = st.recursive(
     max_leaves=12,
 )
 SCRIPT = """
-from surrogate.worker import task_name
+from surrogate.tasks.worker import task_name
 
 def square(inputs):
     return {'square': inputs['x'] ** 2}
@@ -66,7 +73,8 @@ def test_a_task_is_known_by_its_name_and_a_failure_is_a_sentence():
     assert run_task('math:sqrt', -9.0)['sentence'] == 'ValueError: math domain error'
     assert run_task('gone:a', {})['sentence'] == "ModuleNotFoundError: No module named 'gone'"
     assert run_task('math:gone', {})['result'] is None
-    assert run_task('surrogate.datasheet:read_yaml', '/none')['sentence'].startswith('/none: ')
+    missing = run_task('surrogate.files.datasheet:read_yaml', '/none')
+    assert missing['sentence'].startswith('/none: ')
 
 
 def test_a_task_of_a_script_is_found_beside_it(tmp_path):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import pytest
-from surrogate.store import (
+from surrogate.files.store import (
     connected,
     is_passing,
     MAY_BE_NAN,

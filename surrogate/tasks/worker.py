@@ -3,11 +3,12 @@
 """
 Worker process: it runs one task after another and never outlives its parent.
 
-Run `python -P -m surrogate.worker NICENESS MEMORY`, the most memory in bytes, 0 for any. Frames
-are lines of JSON. In come `{"task": "module:function", "inputs": INPUTS}` and `{"cancel": null}`,
-out go `{"step": STEP}` while the task tells how far it is, and at last what `run_task` returns.
-The process is deaf to Ctrl-C and ends with its input, also in the middle of a task, which ends by
-SystemExit. Light to import, so that a worker starts fast; a task brings what it needs.
+Run `python -P -m surrogate.tasks.worker NICENESS MEMORY`, the most memory in bytes, 0 for any.
+Frames are lines of JSON. In come `{"task": "module:function", "inputs": INPUTS}` and
+`{"cancel": null}`, out go `{"step": STEP}` while the task tells how far it is, and at last what
+`run_task` returns. The process is deaf to Ctrl-C and ends with its input, also in the middle of a
+task, which ends by SystemExit. Light to import, so that a worker starts fast; a task brings what
+it needs.
 
 """
 
@@ -26,7 +27,7 @@ import threading
 import time
 from typing import Any, TextIO
 
-from surrogate.child import Frame, Task, UNWIND
+from surrogate.tasks.child import Frame, Task, UNWIND
 
 SHARE_STEP = 0.01
 """A task tells when it has advanced by this share [-]."""
@@ -186,4 +187,4 @@ def _unwind(number: int, frame: Any) -> None:
 
 if __name__ == '__main__':
     # As the module that tasks import, so that there is one listener.
-    importlib.import_module('surrogate.worker').main()
+    importlib.import_module('surrogate.tasks.worker').main()

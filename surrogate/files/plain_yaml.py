@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from surrogate.files import InputError
-from surrogate.limits import DEPTH, MEGA, TEXT, VALUES
+from surrogate.files.limits import DEPTH, MEGA, TEXT, VALUES
 import yaml
 
 

@@ -3,8 +3,8 @@
 """YAML of a bounded depth and number of values, an alias counted with its values."""
 
 import pytest
-from surrogate.limits import DEPTH, TEXT, VALUES
-from surrogate.plain_yaml import plain_values
+from surrogate.files.limits import DEPTH, TEXT, VALUES
+from surrogate.files.plain_yaml import plain_values
 
 
 def test_plain_values_and_aliases_are_read():
