@@ -14,8 +14,6 @@ Python that also compiles.
 """
 
 from collections.abc import Callable
-import dataclasses
-import functools
 import math
 from typing import Any, NamedTuple
 
@@ -62,44 +60,38 @@ def interpreted(surface: Surface, criterion: Criterion, here: float, speeds: lis
     return nearest(surface.tables, criterion, here, speeds, [Found()])
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Advisor:
+def advised_speed(
+    surface: Surface,
+    limits: Limits,
+    *,
+    speed: float,
+    axial_load: float,
+    temperature: float,
+    direction: Direction,
+    nearest: Nearest = interpreted,
+) -> float:
     """
-    The point by which an event was raised, and the speed that would clear it, found once.
+    Return the nearest speed [rad/s] that clears at the point of an event, NaN for none.
 
-    Speed [rad/s], axial load [N], temperature [K], machine frame. There is advice only where the
-    process leaves the axis free in its speed: `speed_allowed`.
+    Speed [rad/s], axial load [N], temperature [K], machine frame. The process must leave the axis
+    free in its speed.
 
     """
-
-    speed: float
-    axial_load: float
-    temperature: float
-    direction: Direction
-    surface: Surface
-    limits: Limits
-    speed_allowed: bool = False
-    nearest: Nearest = dataclasses.field(default=interpreted, compare=False, repr=False)
-
-    @functools.cached_property
-    def target_speed(self) -> float:
-        """Return the nearest speed [rad/s] that clears at the point, NaN if none is advised."""
-        slowest, fastest = self.surface.speed_range
-        slowest = max(slowest, self.limits.standstill_speed)
-        if not (self.speed_allowed and slowest < fastest):
-            return NAN
-        ratio = fastest / slowest
-        grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
-        speeds = [min(speed, fastest) for speed in grid]
-        criterion = Criterion(
-            load=float(opposing_load(self.axial_load, self.direction)),
-            temperature=float(self.temperature),
-            rcs=float(rcs_to_clear(self.limits)),
-            efficiency=float(efficiency_to_clear(self.limits)),
-            light_load=float(self.limits.light_load),
-        )
-        speed = self.nearest(self.surface, criterion, abs(self.speed), speeds)
-        return signed(speed, self.direction)
+    slowest, fastest = surface.speed_range
+    slowest = max(slowest, limits.standstill_speed)
+    if not slowest < fastest:
+        return NAN
+    ratio = fastest / slowest
+    grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
+    speeds = [min(speed, fastest) for speed in grid]
+    criterion = Criterion(
+        load=float(opposing_load(axial_load, direction)),
+        temperature=float(temperature),
+        rcs=float(rcs_to_clear(limits)),
+        efficiency=float(efficiency_to_clear(limits)),
+        light_load=float(limits.light_load),
+    )
+    return signed(nearest(surface, criterion, abs(speed), speeds), direction)
 
 
 def nearest(tables: Any, criterion: Criterion, here: float, speeds: Any, room: Any) -> float:

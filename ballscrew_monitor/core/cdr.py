@@ -35,15 +35,15 @@ def serialized(message: Any) -> bytes:
 @functools.lru_cache
 def _message_encoder(message_type: Any) -> Encoder:
     names = message_type.get_fields_and_field_types()
-    parts: list[Encoder] = []
+    parts: list[tuple[str, Encoder]] = []  # numbers in a row have no name
     fields = zip(names, message_type.SLOT_TYPES)
     for plain, group in itertools.groupby(fields, key=lambda field: _is_plain(field[1])):
         run = list(group)
-        parts += [_row(run)] if plain else [_field(name, _encoder(kind)) for name, kind in run]
+        parts += [('', _row(run))] if plain else [(name, _encoder(kind)) for name, kind in run]
 
     def encode(data: bytearray, message: Any) -> None:
-        for encode_part in parts:
-            encode_part(data, message)
+        for name, encode_part in parts:
+            encode_part(data, getattr(message, name) if name else message)
         if not parts:  # a message without fields has one byte
             data.append(0)
 
@@ -75,13 +75,6 @@ def _row(fields: Sequence[tuple[str, Any]]) -> Encoder:
     return encode
 
 
-def _field(name: str, encode_value: Encoder) -> Encoder:
-    def encode(data: bytearray, message: Any) -> None:
-        encode_value(data, getattr(message, name))
-
-    return encode
-
-
 def _encoder(kind: Any) -> Encoder:
     """Return what appends a field of a type."""
     if isinstance(kind, definition.Array):
@@ -99,14 +92,17 @@ def _encoder(kind: Any) -> Encoder:
 def _all_of(kind: Any, *, counted: bool) -> Encoder:
     """Return what appends every element, after their number if they are `counted`."""
     numbers = isinstance(kind, definition.BasicType)
-    encode_all = _numbers(kind) if numbers else _each(_encoder(kind))
+    encode_element = _numbers(kind) if numbers else _encoder(kind)
 
     def encode(data: bytearray, values: Sequence[Any]) -> None:
         if counted:
             _align(data, _LENGTH.size)
             data += _LENGTH.pack(len(values))
-        if len(values):
-            encode_all(data, values)
+        if numbers and len(values):
+            encode_element(data, values)  # all of them at once
+        elif not numbers:
+            for value in values:
+                encode_element(data, value)
 
     return encode
 
@@ -122,14 +118,6 @@ def _numbers(kind: Any) -> Encoder:
         _align(data, size)
         numbers = map(ord, values) if name == 'octet' else values
         data += struct.pack(f'<{len(values)}{code}', *numbers)
-
-    return encode
-
-
-def _each(encode_one: Encoder) -> Encoder:
-    def encode(data: bytearray, values: Sequence[Any]) -> None:
-        for value in values:
-            encode_one(data, value)
 
     return encode
 

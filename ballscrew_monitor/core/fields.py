@@ -128,11 +128,37 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
     for segment in _DOT.split(path):
         if isinstance(kind, str):
             raise InputError(f'field {path!r}: {segment!r} is asked of a {kind}')
-        new_steps, kind = _compile_segment(path, segment, kind)
-        steps += new_steps
+        name, key = _name_and_key(path, segment)
+        whole, fields = _name(kind), kind.get_fields_and_field_types()
+        if name not in fields:
+            raise InputError(
+                f'field {path!r}: {whole} has no field {name!r}, it has {", ".join(fields)}'
+            )
+        array = _ARRAY.fullmatch(fields[name])
+        if key is None:
+            steps.append(operator.attrgetter(name))
+            kind = _resolve(fields[name])
+            continue
+        if array is None:
+            raise InputError(f'field {path!r}: {name!r} of {whole} is {fields[name]}, no array')
+        kind = _resolve(array['sequence'] or array['array'])
+        if not key.isdecimal() and fields.get('name') != 'sequence<string>':
+            raise InputError(f'field {path!r}: {whole} has no list of names to find {key!r} in')
+        steps.append(_element(name, key))
     if not isinstance(kind, str) or kind not in _NUMBERS:
         raise InputError(f'field {path!r} of {_name(message_type)} is {_name(kind)}, not a number')
-    return _chain([*steps, ord] if kind == 'octet' else steps)  # that is bytes in Python
+    steps += [ord] if kind == 'octet' else []  # that is bytes in Python
+
+    def read(message: object) -> float | OtherJoints | TooShort:
+        value: Any = message
+        try:
+            for step in steps:
+                value = step(value)
+        except _Absent as absent:
+            return absent.found
+        return float(value)
+
+    return read
 
 
 def number_fields(message_type: MessageClass) -> tuple[str, ...]:
@@ -164,26 +190,6 @@ def _name_and_key(path: str, segment: str) -> tuple[str, str | None]:
     return name, key
 
 
-def _compile_segment(
-    path: str, segment: str, kind: MessageClass
-) -> tuple[list[ReadStep], MessageClass | str]:
-    name, key = _name_and_key(path, segment)
-    fields = kind.get_fields_and_field_types()
-    if name not in fields:
-        raise InputError(
-            f'field {path!r}: {_name(kind)} has no field {name!r}, it has {", ".join(fields)}'
-        )
-    array = _ARRAY.fullmatch(fields[name])
-    if key is None:
-        return [operator.attrgetter(name)], _resolve(fields[name])
-    if array is None:
-        raise InputError(f'field {path!r}: {name!r} of {_name(kind)} is {fields[name]}, no array')
-    element = _resolve(array['sequence'] or array['array'])
-    if not key.isdecimal() and fields.get('name') != 'sequence<string>':
-        raise InputError(f'field {path!r}: {_name(kind)} has no list of names to find {key!r} in')
-    return [_element(name, key)], element
-
-
 def _resolve(field_type: str) -> MessageClass | str:
     """Return the class of a nested message; any other type as its text."""
     package, slash, name = field_type.partition('/')
@@ -212,16 +218,3 @@ def _element(name: str, key: str) -> ReadStep:
             raise _Absent(TooShort(name, key, len(array))) from None
 
     return step
-
-
-def _chain(steps: list[ReadStep]) -> FieldReader:
-    def read(message: object) -> float | OtherJoints | TooShort:
-        value: Any = message
-        try:
-            for step in steps:
-                value = step(value)
-        except _Absent as absent:
-            return absent.found
-        return float(value)
-
-    return read

@@ -61,28 +61,7 @@ def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
         return f'{carried}: set {parameter}.type to one of them'
     if link.type_name and link.type_name not in types:
         return f'{carried}, expected is {link.type_name}: set {parameter}.type to {types[0]}'
-    return _qos_reason(link)
-
-
-def several_reason(link: Link, parameter: str) -> str:
-    """Return which publishers send the input `parameter`, where one is expected, and the cure."""
-    axis = parameter.partition('.')[0]
-    return f'{senders(link)} send it: stop all but one, or set {axis}.one_source to false'
-
-
-def senders(link: Link) -> str:
-    """Return by whom a topic is published, in words."""
-    nodes = ', '.join(sorted({publisher.node for publisher in link.publishers} - {''}))
-    return ' '.join(filter(None, ('several publishers on', link.topic, nodes and f'({nodes})')))
-
-
-def types_of(link: Link) -> list[str]:
-    """Return the message types that are published on the topic."""
-    return sorted({publisher.type_name for publisher in link.publishers})
-
-
-def _qos_reason(link: Link) -> str:
-    """Return what no publisher of the type offers of the QoS that is asked for."""
+    # What no publisher of the type offers of the QoS that is asked for.
     policies = (('reliability', RELIABLE, BEST_EFFORT), ('durability', TRANSIENT_LOCAL, VOLATILE))
     unfit = [
         [
@@ -100,3 +79,20 @@ def _qos_reason(link: Link) -> str:
         f'QoS does not fit on {link.topic}, offered is {offered} and asked for is {asked}: '
         f'set qos_overrides.{link.topic}.subscription.{policy} to {offered}'
     )
+
+
+def several_reason(link: Link, parameter: str) -> str:
+    """Return which publishers send the input `parameter`, where one is expected, and the cure."""
+    axis = parameter.partition('.')[0]
+    return f'{senders(link)} send it: stop all but one, or set {axis}.one_source to false'
+
+
+def senders(link: Link) -> str:
+    """Return by whom a topic is published, in words."""
+    nodes = ', '.join(sorted({publisher.node for publisher in link.publishers} - {''}))
+    return ' '.join(filter(None, ('several publishers on', link.topic, nodes and f'({nodes})')))
+
+
+def types_of(link: Link) -> list[str]:
+    """Return the message types that are published on the topic."""
+    return sorted({publisher.type_name for publisher in link.publishers})

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of one axis, gathered into stretches and added up: interpreted or compiled."""
 
+import dataclasses
 import functools
 from typing import Any, NamedTuple
 
@@ -18,7 +19,7 @@ from ballscrew_monitor.health.records import SpectrumBin, Stretch
 from ballscrew_monitor.health.spectrum import (
     count,
     count_many,
-    spectrum_settings,
+    sliding_of,
     SpectrumMemory,
     take_bins,
 )
@@ -54,17 +55,17 @@ class Collector:
         """Look up severity in `surface` from now on."""
         self._surface = surface
         self._tables = surface.tables
-        self._spectrum = spectrum_settings(surface, self._settings.max_gap)
+        self._settings = dataclasses.replace(self._settings, sliding=sliding_of(surface))
 
     def take(self, row: Any) -> Collected | None:
         """Take one row of the judgement; return what has ended with it, None for nothing."""
         ended = step(self._settings, self._memory, row, self._stretch)
-        counted = count(self._tables, self._spectrum, self._sums, row, self._point)
+        counted = count(self._tables, self._settings, self._sums, row, self._point)
         if counted and not ended:
             return None
         bins = [] if counted else take_bins(self._sums)
         if not counted:
-            count(self._tables, self._spectrum, self._sums, row, self._point)
+            count(self._tables, self._settings, self._sums, row, self._point)
         return Collected(self._run.take(self._taken(ended)), bins)
 
     def _taken(self, ended: bool) -> list[Stretch]:
@@ -82,11 +83,11 @@ class Collector:
             at, number = _compiled(step_many)(settings, memory, rows, room, at, ROOM)
             stretches += [from_array(Stretch, stretch) for stretch in room[:number]]
         self._memory = from_array(GatherMemory, memory[0])
-        tables, spectrum = self._surface.array_tables, as_array(self._spectrum)
+        tables = self._surface.array_tables
         point, bins, at = as_array(self._point), list[SpectrumBin](), 0
         while True:
             sums = as_array(self._sums)
-            at = _compiled(count_many)(tables, spectrum, sums, rows, point, at)
+            at = _compiled(count_many)(tables, settings, sums, rows, point, at)
             self._sums = from_array(SpectrumMemory, sums[0])
             if at == len(rows):
                 return Collected(self._run.take(stretches), bins)

@@ -203,16 +203,9 @@ def now_of(time: Array) -> int:
     return min(wanted, len(time) - FEWEST_LOGS)
 
 
-class Latched(NamedTuple):
-    """Condition after a look, and the index of the log since which it has changed, -1 for none."""
-
-    condition: Condition
-    since: int
-
-
-def latched(course: Iterable[Look]) -> list[Latched]:
+def latched(course: Iterable[Look]) -> list[tuple[Condition, int]]:
     """
-    Return the condition after each look.
+    Return the condition after each look, and the log since which it has changed, -1 for none.
 
     Worse and slightly changed stay until the change was eight weeks within the tolerance, or not
     proven.
@@ -238,5 +231,5 @@ def latched(course: Iterable[Look]) -> list[Latched]:
             state, left = Condition.SLIGHTLY_CHANGED, math.nan
         else:
             state = unchanged
-        states.append(Latched(state, since))
+        states.append((state, since))
     return states

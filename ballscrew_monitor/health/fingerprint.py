@@ -42,14 +42,22 @@ class Recogniser:
 
     def take(self, stretches: Iterable[Stretch]) -> list[Stretch]:
         """Take stretches in their order; return those that are known to be in a run or not."""
-        return [done for one in stretches for done in self._next(one)]
+        return [done for stretch in stretches for done in self._next(stretch)]
 
     def finish(self) -> list[Stretch]:
         """Return what was held back: there is no more to come."""
         known = self._step + (len(self._ways) == 2) >= FEWEST_STEPS
         held, self._held = self._held, []
         self._step, self._ways = 0, set()
-        return [self._freed(one) for one in held] if known else held
+        if not known:
+            return held
+        free = self._free_load
+        return [
+            dataclasses.replace(stretch, axial_load=free, load_source=LoadSource.FREE)
+            if stretch.load_source == LoadSource.DERIVED
+            else stretch
+            for stretch in held
+        ]
 
     def _next(self, stretch: Stretch) -> list[Stretch]:
         if stretch.speed == 0.0:
@@ -65,7 +73,7 @@ class Recogniser:
         return [*done, stretch]
 
     def _goes_on(self, stretch: Stretch) -> bool:
-        """Tell whether a stretch belongs to this step, or to the next once both ways are done."""
+        """Return True if a stretch is of this step, or of the next once both ways are done."""
         last = self._held[-1]
         if not 0 <= stretch.start - last.start - last.duration * SECOND <= PAUSE:
             return False
@@ -76,13 +84,6 @@ class Recogniser:
             self._step, self._ways = self._step + 1, {_way(stretch)}
             return True
         return False
-
-    def _freed(self, stretch: Stretch) -> Stretch:
-        if stretch.load_source != LoadSource.DERIVED:
-            return stretch
-        return dataclasses.replace(
-            stretch, axial_load=self._free_load, load_source=LoadSource.FREE
-        )
 
 
 def _is_near(stretch: Stretch, step: int) -> bool:

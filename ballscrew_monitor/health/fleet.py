@@ -27,6 +27,7 @@ Key = TypeVar('Key')
 LEVEL = 0.1  # share of false alarms among the axes told worse in a year, at most in the mean [-]
 ALARM = 0.02  # probability that an axis without a change alarms by itself in a year, at most [-]
 YEAR, WEEK = 365 * DAY, 7 * DAY
+NOT_TOLD = 'worse by its own logs; beside the other axes it needs more of them to be told so'
 SHARES = 2.10974  # sum of 1/(n ln(n)^2) over all n from 2 on
 
 
@@ -117,10 +118,16 @@ def controlled(courses: Mapping[Key, Sequence[Health]]) -> tuple[dict[Key, list[
         worse = np.array([health.condition is Condition.WORSE for health in known[key]])
         begins.append(worse & ~np.concatenate([[False], worse[:-1]]))
     dates = dict(zip(order, confirmed(stamps, factors, begins).tolist(), strict=True))
-    lowered = {
-        key: [_lowered(health) if health.stamp < dates[key] else health for health in course]
-        for key, course in known.items()
-    }
+    lowered = {key: list(course) for key, course in known.items()}
+    for key, course in lowered.items():
+        for at, health in enumerate(course):
+            if health.stamp < dates[key] and health.condition is Condition.WORSE:
+                condition, drag = Condition.SLIGHTLY_CHANGED, health.quantity(DRAG)
+                verdict = verdict_of(health.axis, condition, drag, health.causes, health.since)
+                notes = [*health.notes, NOT_TOLD]
+                course[at] = dataclasses.replace(
+                    health, condition=condition, verdict=verdict, notes=notes
+                )
     alone, together = (
         sum(course[-1].condition is Condition.WORSE for course in part.values())
         for part in (known, lowered)
@@ -130,14 +137,3 @@ def controlled(courses: Mapping[Key, Sequence[Health]]) -> tuple[dict[Key, list[
         f'such are so by chance; by its own logs alone each, {alone} would be worse, with '
         f'at most {ALARM * len(known):.2g} false alarms a year'
     )
-
-
-def _lowered(health: Health) -> Health:
-    """Return what is said of an axis that is worse by itself, but not told in the fleet."""
-    if health.condition is not Condition.WORSE:
-        return health
-    condition, drag = Condition.SLIGHTLY_CHANGED, health.quantity(DRAG)
-    note = 'worse by its own logs; beside the other axes it needs more of them to be told so'
-    verdict = verdict_of(health.axis, condition, drag, health.causes, health.since)
-    notes = [*health.notes, note]
-    return dataclasses.replace(health, condition=condition, verdict=verdict, notes=notes)

@@ -48,17 +48,19 @@ MEASURED_LOAD, DERIVED_LOAD, FREE_LOAD = map(int, LoadSource)
 @dataclasses.dataclass(slots=True)
 class GatherSettings:
     """
-    What the axis states.
+    What axis and surface state.
 
     A gap above `max_gap` [ns], or above five sample periods if these are longer, ends a stretch.
     `free_load` [N, machine frame] is the load of motion that is free of process force: of a
     reference run, and, where the axis is `always_free`, of all motion whose load is derived.
+    `sliding` [m/rad] is that of the surface, NaN if not stated.
 
     """
 
     max_gap: int = MAX_GAP
     free_load: float = 0.0
     always_free: bool = False
+    sliding: float = math.nan
 
 
 @dataclasses.dataclass(slots=True)
@@ -116,10 +118,15 @@ def step(settings: Any, memory: Any, row: Any, stretch: Any) -> bool:
         if span == 0:
             return False
         longest = max(settings.max_gap, min(PERIODS * memory.period, LARGEST_GAP))
-        if not 0 < span <= longest or _is_other(memory, row):
+        same_sources = (row.axial_load_source != MEASURED) == memory.derived
+        same_sources &= (row.temperature_source == MEASURED) == memory.temperature_measured
+        if not 0 < span <= longest or row.direction != memory.direction or not same_sources:
             ended = finish(settings, memory, stretch)
+        # The ripple follows the median difference of two samples of the speed over the speed.
+        elif abs(row.speed - memory.speed) > memory.ripple * abs(row.speed):
+            memory.ripple = min(memory.ripple * RIPPLE_STEP, WIDEST_SHARE)
         else:
-            _follow_ripple(memory, row.speed)
+            memory.ripple = max(memory.ripple / RIPPLE_STEP, 1e-5)
         if 0 < span <= LARGEST_GAP:  # the period follows at once if it is shorter, else slowly
             slower = memory.period > 0 and span >= memory.period
             change = span - memory.period
@@ -191,23 +198,6 @@ def _end_rest(memory: Any, stretch: Any) -> bool:
     stretch.load_source, stretch.temperature_measured = DERIVED_LOAD, False
     memory.rest_time, memory.rest_torque = 0, 0.0
     return True
-
-
-def _follow_ripple(memory: Any, speed: float) -> None:
-    """Follow the median of the difference of two samples of the speed over the speed [-]."""
-    if abs(speed - memory.speed) > memory.ripple * abs(speed):
-        memory.ripple = min(memory.ripple * RIPPLE_STEP, WIDEST_SHARE)
-    else:
-        memory.ripple = max(memory.ripple / RIPPLE_STEP, 1e-5)
-
-
-def _is_other(memory: Any, row: Any) -> bool:
-    """Return True if a row has another direction or other sources than the one before."""
-    return (
-        row.direction != memory.direction
-        or (row.axial_load_source != MEASURED) != memory.derived
-        or (row.temperature_source == MEASURED) != memory.temperature_measured
-    )
 
 
 def _add(memory: Any, row: Any) -> None:

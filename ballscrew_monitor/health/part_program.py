@@ -105,7 +105,7 @@ def _blocks(
     yield from dialect.head
     yield from map(dialect.comment.format, _notes(steps, axis, travel, start))
     if math.isfinite(start):
-        slow = MILLI * MINUTE * max(one.feed for one in steps)
+        slow = MILLI * MINUTE * max(step.feed for step in steps)
         yield dialect.place.format(axis=axis, length=MILLI * start, feed=slow)
     yield from dialect.relative
     for run in range(runs):
@@ -117,10 +117,10 @@ def _blocks(
 
 
 def _moves(steps: Iterable[Step], axis: str, travel: float, dialect: Dialect) -> Iterator[str]:
-    for one in steps:
-        length = MILLI * min(travel, LEAST_TIME * one.feed)
-        feed = MILLI * MINUTE * one.feed
-        for _ in range(one.strokes):
+    for step in steps:
+        length = MILLI * min(travel, LEAST_TIME * step.feed)
+        feed = MILLI * MINUTE * step.feed
+        for _ in range(step.strokes):
             for way in (length, -length):
                 yield dialect.move.format(axis=axis, length=way, feed=feed)
 
@@ -128,9 +128,9 @@ def _moves(steps: Iterable[Step], axis: str, travel: float, dialect: Dialect) ->
 def _notes(steps: Sequence[Step], axis: str, travel: float, start: float) -> Iterator[str]:
     place = f'{MILLI * start:g} mm' if math.isfinite(start) else 'where it stands'
     yield f'free of load, warm, without cutting; {axis} moves {MILLI * travel:g} mm from {place}'
-    for one in steps:
+    for step in steps:
         yield (
-            f'{one.speed / RPM:.0f} rev/min, {MILLI * MINUTE * one.feed:.0f} mm/min: '
-            f'{one.strokes} times forth and back, {one.time:.0f} s'
+            f'{step.speed / RPM:.0f} rev/min, {MILLI * MINUTE * step.feed:.0f} mm/min: '
+            f'{step.strokes} times forth and back, {step.time:.0f} s'
         )
-    yield f'{sum(one.time for one in steps):.0f} s in motion'
+    yield f'{sum(step.time for step in steps):.0f} s in motion'

@@ -68,13 +68,25 @@ def ranked(cells: Mapping[str, NDArray[Any]], lead: float) -> list[Peer]:
     levels = {axis: level for axis, own in cells.items() if (level := _level(own, lead))}
     peers = []
     for axis, own in levels.items():
-        apart = []
+        apart = []  # differences of ln(friction) from those of the peers
         for peer, other in levels.items():
             common = [group for group in own if group in other]
             if peer != axis and len(common) >= LEAST_COMMON * len(own):
                 apart.append(statistics.mean(own[group] - other[group] for group in common))
-        if len(apart) >= FEWEST_PEERS:
-            peers.append(_peer(axis, apart, f'{len(own)} places, the last {NOW} logs'))
+        if len(apart) < FEWEST_PEERS:
+            continue
+        value, spread = statistics.median(apart), max(apart) - min(apart)
+        reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(apart))
+        ends = map(math.expm1, (value, value - reach, value + reach))
+        evidence = f'{len(own)} places, the last {NOW} logs'
+        peers.append(
+            Peer(
+                axis=axis,
+                difference=quantity(NAME, '-', ends, evidence),
+                peers=len(apart),
+                is_apart=abs(value) - reach > max(TOLERANCE, spread),
+            )
+        )
     return sorted(peers, key=lambda peer: (not peer.is_apart, -abs(peer.difference.value)))
 
 
@@ -88,19 +100,6 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
     seen = (history.weight[-NOW:].sum(axis=0) > 0.0).tolist()
     pairs = zip(history.groups, effects.groups, seen, strict=True)
     return {group: float(level) + now for group, level, known in pairs if known}
-
-
-def _peer(axis: str, apart: Sequence[float], evidence: str) -> Peer:
-    """Return an axis by the differences of its ln(friction) from its peers."""
-    value, spread = statistics.median(apart), max(apart) - min(apart)
-    reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(apart))
-    ends = (value, value - reach, value + reach)
-    return Peer(
-        axis=axis,
-        difference=quantity(NAME, '-', map(math.expm1, ends), evidence),
-        peers=len(apart),
-        is_apart=abs(value) - reach > max(TOLERANCE, spread),
-    )
 
 
 class Spread(NamedTuple):
@@ -162,27 +161,15 @@ def prior_of(peers: Sequence[Spread]) -> Prior:
     """
     if len(peers) < FEWEST_PEERS:
         return USUAL
-    slope, doubt = _slope_of([peer for peer in peers if math.isfinite(peer.deviation)])
-    usual = np.exp(GRID.prior)
-    usual = weight = usual / usual.sum()
-    likelihood = np.array([peer.pairs for peer in peers])
-    for _ in range(ROUNDS):
-        own = likelihood * weight
-        total = USUAL_PEERS * usual + (own / own.sum(axis=1, keepdims=True)).sum(axis=0)
-        weight = total / total.sum()
-    return Prior(slope, doubt, tuple(weight.tolist()))
-
-
-def _slope_of(peers: Sequence[Spread]) -> tuple[float, float]:
-    """Return mean and standard deviation of the slope of an axis by those of its peers [1/K]."""
-    apart = np.array([peer.slope for peer in peers]) - SLOPE
-    noise = np.array([peer.deviation for peer in peers]) ** 2
+    known = [peer for peer in peers if math.isfinite(peer.deviation)]
+    apart = np.array([peer.slope for peer in known]) - SLOPE
+    noise = np.array([peer.deviation for peer in known]) ** 2
     means, variances, likelihoods = [], [], []
     for share in OWN_SHARES:
         own, common = share * SLOPE_DOUBT**2, (1.0 - share) * SLOPE_DOUBT**2
         covariance = np.diag(noise + own) + common
         solved = np.linalg.solve(covariance, apart)
-        gain = np.linalg.solve(covariance, np.full(len(peers), common))
+        gain = np.linalg.solve(covariance, np.full(len(known), common))
         means.append(common * float(solved.sum()))
         variances.append(own + common - common * float(gain.sum()))
         likelihoods.append(-0.5 * (float(apart @ solved) + np.linalg.slogdet(covariance)[1]))
@@ -190,4 +177,12 @@ def _slope_of(peers: Sequence[Spread]) -> tuple[float, float]:
     weight = weight / weight.sum()
     mean = float(weight @ means)
     variance = float(weight @ (np.array(variances) + (np.array(means) - mean) ** 2))
-    return SLOPE + mean, math.sqrt(variance)
+    # Scatter and wander: weights of the grid by expectation and maximisation.
+    usual = np.exp(GRID.prior)
+    usual = pairs = usual / usual.sum()
+    likelihood = np.array([peer.pairs for peer in peers])
+    for _ in range(ROUNDS):
+        parts = likelihood * pairs
+        total = USUAL_PEERS * usual + (parts / parts.sum(axis=1, keepdims=True)).sum(axis=0)
+        pairs = total / total.sum()
+    return Prior(SLOPE + mean, math.sqrt(variance), tuple(pairs.tolist()))

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advisor
+from ballscrew_monitor.core.advice import advised_speed
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.lubrication import opposed
@@ -131,27 +131,24 @@ def remedies_of(programme: Programme, *, speed_allowed: bool = False) -> dict[st
     faster = (1.0 / factor) ** (1.0 / FILM_EXPONENT)
     if factor < 1.0 and programme.share(faster=faster, efficiency=False) >= AIMED:
         remedies['film factor'] = 1.0
-    if speed_allowed and (feed := _feed(programme)) is not None:
-        remedies['feed'] = feed
-    return remedies
-
-
-def _feed(programme: Programme) -> float | None:
-    """Return the slowest feed at which the programme lies inside, slower points raised to it."""
-    advisors = (
-        Advisor(
-            speed=point.speed,
-            axial_load=point.axial_load,
-            temperature=point.temperature,
-            direction=Direction.POSITIVE if point.direction > 0 else Direction.NEGATIVE,
-            surface=programme.surface,
-            limits=programme.limits,
-            speed_allowed=True,
+    if not speed_allowed:
+        return remedies
+    # The slowest feed at which the programme lies inside, slower points raised to it.
+    nearest = {
+        abs(
+            advised_speed(
+                surface,
+                programme.limits,
+                speed=point.speed,
+                axial_load=point.axial_load,
+                temperature=point.temperature,
+                direction=Direction.POSITIVE if point.direction > 0 else Direction.NEGATIVE,
+            )
         )
         for point in programme.points
-    )
-    nearest = {abs(advisor.target_speed) for advisor in advisors}
+    }
     for speed in sorted(filter(math.isfinite, nearest)):
         if programme.share(slowest=speed) >= AIMED:
-            return speed * programme.surface.lead / TURN * MINUTE
-    return None
+            remedies['feed'] = speed * surface.lead / TURN * MINUTE
+            break
+    return remedies

@@ -28,7 +28,7 @@ from ballscrew_monitor.health.bands import (
     UNKNOWN_LOAD,
 )
 from ballscrew_monitor.health.records import SpectrumBin
-from ballscrew_monitor.health.rows import DAY, has_torque, MAX_GAP, moves
+from ballscrew_monitor.health.rows import DAY, has_torque, moves
 from ballscrew_monitor.judge.inputs import DERIVED, MEASURED
 from ballscrew_monitor.judge.point import NEGATIVE, NO_DIRECTION, opposing_load
 from ballscrew_monitor.judge.zone import VALID
@@ -43,14 +43,6 @@ BANDS = 2 * LAST_LOAD + 2
 """Bands of load from the most negative one on, and the band of loads that are not known."""
 CLASSES = len(SEVERITIES) + 1
 NO_CLASS = -1
-
-
-@dataclasses.dataclass(slots=True)
-class SpectrumSettings:
-    """`max_gap` [ns] for which a sample holds at most, and sliding [m/rad], NaN if not stated."""
-
-    max_gap: int = MAX_GAP
-    sliding: float = NAN
 
 
 @dataclasses.dataclass(slots=True)
@@ -79,17 +71,17 @@ class SpectrumMemory:
     wear_time: list[float] = many(BANDS * CLASSES, 0.0)
 
 
-def spectrum_settings(surface: Surface, max_gap: int = MAX_GAP) -> SpectrumSettings:
-    """Return the settings for a surface; `max_gap` [ns]."""
-    sliding = float(surface.header.get('sliding_m_per_rad', NAN))
-    return SpectrumSettings(max_gap=max_gap, sliding=sliding)
+def sliding_of(surface: Surface) -> float:
+    """Return the sliding that a surface states [m/rad], NaN if it does not."""
+    return float(surface.header.get('sliding_m_per_rad', NAN))
 
 
 def count(tables: Any, settings: Any, memory: Any, row: Any, point: Any) -> bool:
     """
     Take a row; return False, and take nothing, where it is of another day than the sums.
 
-    `tables` are those of the surface; `point` is room for a lookup.
+    `tables` are those of the surface; `settings` are `GatherSettings` with its sliding; `point` is
+    room for a lookup.
 
     """
     if row.tick:
@@ -105,8 +97,26 @@ def count(tables: Any, settings: Any, memory: Any, row: Any, point: Any) -> bool
     memory.moving = moves(row) and 0.0 < abs(row.speed) < math.inf
     if memory.moving:
         _set_load(memory, row)
-        _set_power(tables, memory, row)
-        _set_severity(tables, settings, memory, row, point)
+        # What inertia takes and gives back of the power cancels over a cycle.
+        known = row.validity == VALID and math.isfinite(row.friction_torque)
+        memory.lost = row.friction_torque * memory.speed if known else NAN
+        memory.measured = NAN
+        if known and has_torque(row) and row.axial_load_source == MEASURED:
+            along = 0.0 - row.motor_torque if row.direction == NEGATIVE else row.motor_torque
+            memory.measured = (along - memory.load * tables.lead / TURN) * memory.speed
+        # A class of severity holds until the next look at it.
+        since = row.stamp - memory.looked_at
+        if row.validity != VALID or math.isnan(memory.load):
+            memory.looked, memory.severity = False, NO_CLASS
+        elif not (memory.looked and 0 <= since < SAMPLING):
+            memory.looked, memory.looked_at, memory.severity = True, row.stamp, NO_CLASS
+            look_up(tables, memory.speed, memory.load, row.temperature, point)
+            look_up_rest(tables, memory.load, point)
+            severity = point.asperity_share * MEAN_PRESSURE * point.max_pressure
+            if math.isfinite(settings.sliding):
+                severity *= memory.speed * settings.sliding
+            if math.isfinite(severity):
+                memory.severity = severity_class(severity)
     return True
 
 
@@ -127,35 +137,6 @@ def _set_load(memory: Any, row: Any) -> None:
         memory.band = load_band(memory.load) + LAST_LOAD
     else:
         memory.load, memory.band = NAN, BANDS - 1
-
-
-def _set_power(tables: Any, memory: Any, row: Any) -> None:
-    """Set the power that is lost [W]; what inertia takes and gives back cancels over a cycle."""
-    memory.lost = memory.measured = NAN
-    if row.validity != VALID or not math.isfinite(row.friction_torque):
-        return
-    memory.lost = row.friction_torque * memory.speed
-    if not has_torque(row) or row.axial_load_source != MEASURED:
-        return
-    along = 0.0 - row.motor_torque if row.direction == NEGATIVE else row.motor_torque
-    memory.measured = (along - memory.load * tables.lead / TURN) * memory.speed
-
-
-def _set_severity(tables: Any, settings: Any, memory: Any, row: Any, point: Any) -> None:
-    """Set the class of severity; it holds until the next look at it."""
-    if row.validity != VALID or math.isnan(memory.load):
-        memory.looked, memory.severity = False, NO_CLASS
-        return
-    if memory.looked and 0 <= row.stamp - memory.looked_at < SAMPLING:
-        return
-    memory.looked, memory.looked_at, memory.severity = True, row.stamp, NO_CLASS
-    look_up(tables, memory.speed, memory.load, row.temperature, point)
-    look_up_rest(tables, memory.load, point)
-    severity = point.asperity_share * MEAN_PRESSURE * point.max_pressure
-    if math.isfinite(settings.sliding):
-        severity *= memory.speed * settings.sliding
-    if math.isfinite(severity):
-        memory.severity = severity_class(severity)
 
 
 def _add_span(memory: Any, span: float) -> None:
@@ -207,34 +188,37 @@ _SUMS = [field.name for field in dataclasses.fields(SpectrumMemory) if field.met
 
 
 def merged_bins(bins: Iterable[SpectrumBin], today: int | None = None) -> list[SpectrumBin]:
-    """Return bins with those of one period and band added up; older days `today` are merged."""
+    """
+    Return bins with those of one period and band added up; older days `today` are merged.
+
+    An energy that is not known adds nothing.
+
+    """
     merged: dict[tuple[int, int, int], SpectrumBin] = {}
     for part in bins:
         first, days = part.first_day, part.days
         if today is not None:
             first, days = period_of(first, days, today)
         key = first, days, part.load_band
-        part = dataclasses.replace(part, first_day=first, days=days)
-        merged[key] = _sum(merged[key], part) if key in merged else part
+        other = merged.get(key)
+        if other is None:
+            merged[key] = dataclasses.replace(part, first_day=first, days=days)
+            continue
+        angle, time = other.angle + part.angle, other.time + part.time
+        load = other.axial_load * other.angle + part.axial_load * part.angle
+        times = itertools.zip_longest(other.wear_time, part.wear_time, fillvalue=0.0)
+        energies: dict[str, Any] = {'energy_lost': other.energy_lost + part.energy_lost}
+        for name in ('energy_measured', 'energy_expected'):
+            pair = getattr(other, name), getattr(part, name)
+            known = [energy for energy in pair if not math.isnan(energy)]
+            energies[name] = sum(known) if known else NAN
+        merged[key] = dataclasses.replace(
+            other,
+            axial_load=load / angle,
+            angle=angle,
+            speed=angle / time,
+            time=time,
+            wear_time=tuple(map(sum, times)),
+            **energies,
+        )
     return [merged[key] for key in sorted(merged)]
-
-
-def _sum(part: SpectrumBin, other: SpectrumBin) -> SpectrumBin:
-    """Return two bins of one period and band as one; an energy that is not known adds nothing."""
-    angle, time = part.angle + other.angle, part.time + other.time
-    load = part.axial_load * part.angle + other.axial_load * other.angle
-    times = itertools.zip_longest(part.wear_time, other.wear_time, fillvalue=0.0)
-    energies: dict[str, Any] = {'energy_lost': part.energy_lost + other.energy_lost}
-    for name in ('energy_measured', 'energy_expected'):
-        pair = getattr(part, name), getattr(other, name)
-        known = [energy for energy in pair if not math.isnan(energy)]
-        energies[name] = sum(known) if known else NAN
-    return dataclasses.replace(
-        part,
-        axial_load=load / angle,
-        angle=angle,
-        speed=angle / time,
-        time=time,
-        wear_time=tuple(map(sum, times)),
-        **energies,
-    )

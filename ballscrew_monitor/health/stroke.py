@@ -240,19 +240,13 @@ class ReversalSums:
         ]
 
 
-class Motion(NamedTuple):
-    """Samples of motion: stamps [ns], speed of the table [m/s], measured torque [N m] or NaN."""
+def motion_of(rows: NDArray[Any], lead: float) -> tuple[Stamps, Array, Array]:
+    """
+    Return the samples of motion among rows (an array of ROW); lead [m].
 
-    stamps: Stamps
-    speed: Array
-    torque: Array
+    Stamps [ns], speed of the table [m/s], measured torque [N m] or NaN.
 
-
-def motion_of(rows: NDArray[Any], lead: float) -> Motion:
-    """Return the samples of motion among rows (an array of ROW); lead [m]."""
+    """
     moving = rows[moves_many(rows) & np.isfinite(rows['speed'])]
-    return Motion(
-        stamps=moving['stamp'].copy(),
-        speed=moving['speed'] * lead / TURN,
-        torque=np.where(has_torque_many(moving), moving['motor_torque'], math.nan),
-    )
+    torque = np.where(has_torque_many(moving), moving['motor_torque'], math.nan)
+    return moving['stamp'].copy(), moving['speed'] * lead / TURN, torque

@@ -142,18 +142,17 @@ def known(number: float) -> float:
     return 0.0 if math.isnan(number) else number
 
 
-@dataclasses.dataclass(slots=True)
 class Dwell:
     """Tells when a solve is worth its time."""
 
-    _since: int = 0
-    _place: tuple[float, float] | None = None  # speed [rad/s], axial load [N]
-    _asked: int | None = None
+    def __init__(self) -> None:
+        self._since, self._place = 0, (math.nan, math.nan)  # speed [rad/s], axial load [N]
+        self._asked: int | None = None
 
     def update(self, row: Row, limits: Limits) -> bool:
         """Take a row; return True if its point should be solved."""
         stamp, place = row.stamp, (row.speed, row.axial_load)
-        if self._place is None or stamp < self._since or not _is_near(place, self._place):
+        if stamp < self._since or not _is_near(place, self._place):
             self._since, self._place = stamp, place
         rested = self._asked is None or not 0 <= stamp - self._asked < PAUSE
         due = rested and stamp - self._since >= STAY and is_uncertain(row, limits)

@@ -85,8 +85,14 @@ class ManyJudge:
         self._monitor.speeds = from_array(SlopeRing, speeds[0])
         self._monitor.positions = from_array(SlopeRing, positions[0])
 
-    def _take_over(self) -> None:
-        """Remember what the monitor does."""
+    def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
+        """
+        Judge events, an array of EVENT.
+
+        The memory comes of each row of which a state is published if `states` are wanted, else of
+        the rows that begin or end an excursion.
+
+        """
         monitor = self._monitor
         if not monitor.is_lent(self._give_back):
             memory = monitor.memory
@@ -96,17 +102,7 @@ class ManyJudge:
             monitor.lend(self._give_back)
         if monitor.numbers is not self._settings:
             self._settings, self._numbers = monitor.numbers, as_array(monitor.numbers)
-
-    def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
-        """
-        Judge events, an array of EVENT.
-
-        The memory comes of each row of which a state is published if `states` are wanted, else of
-        the rows that begin or end an excursion.
-
-        """
-        self._take_over()
-        tables, at = self._monitor.surface.array_tables, 0
+        tables, at = monitor.surface.array_tables, 0
         while at < len(events):
             end = at + self._at_once
             some = events[at:end]

@@ -15,7 +15,7 @@ import math
 import operator
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
+from ballscrew_monitor.core.advice import advised_speed, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
@@ -146,7 +146,8 @@ class Monitor:
         self._event = Event()
         self._row = Row()
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
-        self._advisor: Advisor | None = None
+        self._advised_at: tuple[Any, ...] = ()  # the point of the last advice
+        self._advised_speed = math.nan
         self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
 
     @property
@@ -278,21 +279,23 @@ class Monitor:
         memory = self.memory
         speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
         temperature = float(memory.event_temperature[ACTIVE])
-        if not math.isfinite(speed + load + temperature):
+        allowed, limits = self._settings.speed_allowed, self._settings.limits
+        if not (allowed and math.isfinite(speed + load + temperature)):
             return math.nan
-        advisor = Advisor(
-            speed=speed,
-            axial_load=load,
-            temperature=temperature,
-            direction=Direction(int(memory.event_direction[ACTIVE])),
-            surface=self.surface,
-            limits=self._settings.limits,
-            speed_allowed=self._settings.speed_allowed,
-            nearest=self.nearest,
-        )
-        if advisor != self._advisor:
-            self._advisor = advisor
-        return self._advisor.target_speed
+        direction = Direction(int(memory.event_direction[ACTIVE]))
+        point = speed, load, temperature, direction, self.surface, limits
+        if point != self._advised_at:
+            self._advised_at = point
+            self._advised_speed = advised_speed(
+                self.surface,
+                limits,
+                speed=speed,
+                axial_load=load,
+                temperature=temperature,
+                direction=direction,
+                nearest=self.nearest,
+            )
+        return self._advised_speed
 
     @property
     def shelving(self) -> Shelving:

@@ -43,7 +43,7 @@ def snapshot(monitor: Monitor) -> dict[str, Any]:
             if not isinstance(part, SlopeRing) or part.count
         },
         'joints': {
-            source.name: [[one.array, one.joint, *one.names] for one in heard]
+            source.name: [[others.array, others.joint, *others.names] for others in heard]
             for source, heard in monitor.joints.named.items()
             if heard
         },

@@ -247,36 +247,24 @@ def _move_stamps(memory: Any, source: int, step: int) -> None:
         memory.stamps[place] += step
 
 
-def _leap(memory: Any, event: Any) -> int:
+def _accept_speed(settings: Any, memory: Any, event: Any, speed: float) -> None:
     """
-    Return by how much a stamp of the speed leaps ahead of the time that passed [ns], else 0.
+    Take a good speed [rad/s]; a leap of its stamp ahead of the time that passed is no time.
 
     The source has set its clock forward: it lags less behind the arrivals than it did for long.
+    The leap is left out of what has begun and still goes on.
 
     """
     gap = event.stamp - memory.sample_stamp[SPEED]
-    if memory.known[SPEED] == 0 or gap <= BACKWARD_JUMP or event.stamp_source != HEADER:
-        return 0
-    if memory.lags_taken[SPEED] == 0:
-        return 0
-    leap = least_lag(memory, SPEED) - (event.arrival - event.stamp)
-    return min(leap, gap) if leap > BACKWARD_JUMP else 0
-
-
-def _accept_speed(settings: Any, memory: Any, event: Any, speed: float) -> None:
-    """Take a good speed [rad/s]; a leap of its stamp is no time that has passed."""
-    leap = _leap(memory, event)
-    if leap > 0:
-        _leave_out(memory, leap)
+    known = memory.known[SPEED] != 0 and memory.lags_taken[SPEED] != 0
+    if known and gap > BACKWARD_JUMP and event.stamp_source == HEADER:
+        leap = min(least_lag(memory, SPEED) - (event.arrival - event.stamp), gap)
+        if leap > BACKWARD_JUMP:
+            if memory.event_active:
+                memory.event_start[ACTIVE] += leap
+                memory.event_stamp += leap
+            memory.raising = memory.clearing = memory.moment = False
     accept(memory, settings, event, speed)
-
-
-def _leave_out(memory: Any, leap: int) -> None:
-    """Leave a leap forward of the stamps [ns] out of what has begun and still goes on."""
-    if memory.event_active:
-        memory.event_start[ACTIVE] += leap
-        memory.event_stamp += leap
-    memory.raising = memory.clearing = memory.moment = False
 
 
 def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
@@ -288,21 +276,34 @@ def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
 
 def _take_position(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
     """
-    Take the speed at the stamp of a position; tell whether there is one.
+    Take the speed at the stamp of a position; return True if there is one.
 
     A position that asks for more than the plausible speed is refused, and so is the first one
     after a hole: no speed is known there. Both begin a new window.
 
     """
-    value = event.value
+    value, timeout = event.value, settings.timeout[SPEED]
     if positions.count > 0:
-        why, first, second = _odd_position(settings, positions, event)
-        if why != 0:
+        last = slope_last(positions)
+        change = value - positions.values[last]
+        if settings.wrap != 0.0 and abs(change) <= MOST_TURNS * settings.wrap:
+            # The way to the new position is the shorter one.
+            turns = settings.wrap * round(change / settings.wrap)
+            slope_shift(positions, turns)
+            change -= turns
+        gap, change = event.stamp - positions.stamps[last], abs(change)
+        is_hole = gap > timeout
+        length = gap / SECOND
+        if event.stamp_source != HEADER:  # a burst of messages is no jump
+            gap = max(gap, settings.position_window)
+        if is_hole or (gap > 0 and change > settings.plausible[SPEED] * (gap / SECOND)):
             slope_restart(positions, event.stamp, value)
-            refuse(memory, SPEED, why, first, second, event.arrival)
+            if is_hole:
+                refuse(memory, SPEED, HOLE, length, math.nan, event.arrival)
+            else:
+                refuse(memory, SPEED, IMPLAUSIBLE, change, gap / SECOND, event.arrival)
             return False
-    gap = settings.timeout[SPEED]
-    slope_take(positions, settings.position_window, gap, event.stamp, value)
+    slope_take(positions, settings.position_window, timeout, event.stamp, value)
     speed = slope_of(positions)
     if math.isnan(speed):
         drop(memory, SPEED)
@@ -313,25 +314,6 @@ def _take_position(settings: Any, memory: Any, positions: Any, event: Any) -> bo
     return True
 
 
-def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float, float]:
-    """Return why no speed follows from a position and the one before, 0 if one does."""
-    last = slope_last(positions)
-    change = event.value - positions.values[last]
-    if settings.wrap != 0.0 and abs(change) <= MOST_TURNS * settings.wrap:
-        # The way to the new position is the shorter one.
-        turns = settings.wrap * round(change / settings.wrap)
-        slope_shift(positions, turns)
-        change -= turns
-    gap, change = event.stamp - positions.stamps[last], abs(change)
-    if gap > settings.timeout[SPEED]:
-        return HOLE, gap / SECOND, math.nan
-    if event.stamp_source != HEADER:  # a burst of messages is no jump
-        gap = max(gap, settings.position_window)
-    if gap <= 0 or change <= settings.plausible[SPEED] * (gap / SECOND):
-        return 0, math.nan, math.nan
-    return IMPLAUSIBLE, change, gap / SECOND
-
-
 def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
     """Take the grid stamp `now` [ns]; return True if the speed is missing or stale there."""
     # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
@@ -340,7 +322,14 @@ def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
             _jump_back(memory, now)
         rebase(memory, now)
     memory.last_tick = now
-    _forget_the_future(settings, memory, now)
+    # Samples further ahead than is allowed were taken while the clock stood at zero, and would
+    # not go stale for as long.
+    limit = now + settings.tick_period + settings.max_future + BACKWARD_JUMP
+    for source in range(INPUTS):
+        if now != 0 and is_ahead(memory, source, limit):
+            if source == SPEED:
+                _jump_back(memory, now)
+            forget(memory, source)
     timeout = settings.timeout[SPEED]
     return memory.known[SPEED] == 0 or now - memory.arrival[SPEED] > timeout
 
@@ -374,23 +363,6 @@ def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> in
     look_up_rest(tables, opposing_load(row), row)
     memory.published, memory.last_published, memory.window_told = True, row.stamp, True
     return STATE
-
-
-def _forget_the_future(settings: Any, memory: Any, now: int) -> None:
-    """
-    Forget samples that lie further ahead of `now` [ns] than is allowed.
-
-    They were taken while the clock stood at zero, and would not go stale for as long.
-
-    """
-    if now == 0:
-        return
-    limit = now + settings.tick_period + settings.max_future + BACKWARD_JUMP
-    for source in range(INPUTS):
-        if is_ahead(memory, source, limit):
-            if source == SPEED:
-                _jump_back(memory, now)
-            forget(memory, source)
 
 
 def _jump_back(memory: Any, stamp: int) -> None:

@@ -180,8 +180,18 @@ def follow_excursion(settings: Any, memory: Any, row: Any, level_before: int) ->
             _worsen(settings, memory, row, PENDING)
     if memory.level == WARN:
         if level_before != WARN and memory.pending:
-            _raise(memory, row.stamp)
             row.edge = EVENT_BEGINS
+            memory.event_number += 1
+            memory.event_active, memory.pending, memory.event_stamp = True, False, row.stamp
+            memory.event_start[ACTIVE] = memory.event_start[PENDING]
+            memory.event_code[ACTIVE] = memory.event_code[PENDING]
+            memory.event_worst[ACTIVE] = memory.event_worst[PENDING]
+            memory.event_limit[ACTIVE] = memory.event_limit[PENDING]
+            memory.event_speed[ACTIVE] = memory.event_speed[PENDING]
+            memory.event_load[ACTIVE] = memory.event_load[PENDING]
+            memory.event_temperature[ACTIVE] = memory.event_temperature[PENDING]
+            memory.event_direction[ACTIVE] = memory.event_direction[PENDING]
+            memory.event_derived[ACTIVE] = memory.event_derived[PENDING]
     elif end_excursion(memory, row.stamp):
         row.edge = EVENT_ENDS
 
@@ -217,21 +227,6 @@ def _worsen(settings: Any, memory: Any, row: Any, which: int) -> None:
     memory.event_temperature[which] = row.temperature
     memory.event_direction[which] = row.direction
     memory.event_derived[which] = 1 if row.derived != 0 else 0
-
-
-def _raise(memory: Any, stamp: int) -> None:
-    """Make the pending excursion the active one."""
-    memory.event_number += 1
-    memory.event_active, memory.pending, memory.event_stamp = True, False, stamp
-    memory.event_start[ACTIVE] = memory.event_start[PENDING]
-    memory.event_code[ACTIVE] = memory.event_code[PENDING]
-    memory.event_worst[ACTIVE] = memory.event_worst[PENDING]
-    memory.event_limit[ACTIVE] = memory.event_limit[PENDING]
-    memory.event_speed[ACTIVE] = memory.event_speed[PENDING]
-    memory.event_load[ACTIVE] = memory.event_load[PENDING]
-    memory.event_temperature[ACTIVE] = memory.event_temperature[PENDING]
-    memory.event_direction[ACTIVE] = memory.event_direction[PENDING]
-    memory.event_derived[ACTIVE] = memory.event_derived[PENDING]
 
 
 SPEED, AXIAL_LOAD, EFFICIENCY, RCS, FILM_RATIO = range(COLUMNS)

@@ -84,10 +84,10 @@ class HistoryMaker:
         self._moved |= bool(moving.any())
         self._measured |= bool((moving & has_torque_many(rows)).any())
         if self._positions is not None:
-            motion = motion_of(rows, self._lead)
-            motor, table = self._positions.at(motion.stamps)
-            self._stroke.add(motion.stamps, motor, motion.torque)
-            self._reversals.add(motion.stamps, motion.speed, motor, table)
+            stamps, speed, torque = motion_of(rows, self._lead)
+            motor, table = self._positions.at(stamps)
+            self._stroke.add(stamps, motor, torque)
+            self._reversals.add(stamps, speed, motor, table)
         self._take(self._collector.take_many(rows))
 
     def history(

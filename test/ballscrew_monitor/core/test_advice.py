@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 import re
 
-from ballscrew_monitor.core.advice import Advisor, speed_advice
+from ballscrew_monitor.core.advice import advised_speed, speed_advice
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
 from ballscrew_monitor.health.records import Cell, Condition, Health
@@ -27,19 +27,9 @@ LOAD_OR_SIGN = re.compile(r'\d\s*k?N\b|\bloads? (of|with)\b|[-+\u2212]\s*\d')
 SPEED = re.compile(r'rev/min|rad/s|m/min|m/s')
 
 
-def advisor_of(point, surface, limits, *, speed_allowed=True):
-    place = {name: getattr(point, name) for name in ('speed', 'axial_load', 'temperature')}
-    return Advisor(
-        **place,
-        direction=Direction(point.direction),
-        surface=surface,
-        limits=limits,
-        speed_allowed=speed_allowed,
-    )
-
-
 def advise(point, surface, limits):
-    return advisor_of(point, surface, limits).target_speed
+    place = {name: getattr(point, name) for name in ('speed', 'axial_load', 'temperature')}
+    return advised_speed(surface, limits, **place, direction=Direction(point.direction))
 
 
 def faster_is_better(speed, load):
@@ -93,9 +83,12 @@ def test_advice_is_a_sentence_without_a_sign(core, says):
 
 def test_no_speed_is_advised_unless_the_process_leaves_it_free(core):
     surface = core.surface(rcs=faster_is_better)
-    point, limits = core.point(speed=5.0), core.limits()
-    advisor = advisor_of(point, surface, limits, speed_allowed=False)
-    assert math.isnan(advisor.target_speed)
+    point, monitor = core.point(speed=5.0), core.monitor(surface, core.limits())
+    memory = monitor.memory
+    memory.event_number, memory.event_direction[0] = 1, point.direction
+    memory.event_speed[0], memory.event_load[0] = point.speed, point.axial_load
+    memory.event_temperature[0] = point.temperature
+    assert math.isnan(monitor.target_speed)
     assert surface.asked == []  # nor is one looked for
 
 

@@ -45,7 +45,7 @@ def seen(week, change, *, raised=0, shifted=0, half=0.03):
 
 
 def states(many):
-    return [one.condition for one in latched(many)]
+    return [condition for condition, _ in latched(many)]
 
 
 def test_what_is_worse_stays_until_eight_weeks_within_the_tolerance():
@@ -53,11 +53,11 @@ def test_what_is_worse_stays_until_eight_weeks_within_the_tolerance():
     many += [seen(week, -0.06) for week in range(2, 10)]
     many += [seen(week, -0.02) for week in range(10, 20)]
     found = latched(many)
-    conditions = [one.condition for one in found]
+    conditions = [condition for condition, _ in found]
     back = 10 + round(RECOVERY / 7.0)
     assert conditions == [NORMAL] + [WORSE] * (back - 1) + [NORMAL] * (20 - back)
-    assert {one.since for one in found if one.condition is WORSE} == {1}
-    assert found[-1].since == -1
+    assert {since for condition, since in found if condition is WORSE} == {1}
+    assert found[-1] == (NORMAL, -1)
 
 
 def test_a_relapse_begins_the_eight_weeks_again():
@@ -68,8 +68,7 @@ def test_a_relapse_begins_the_eight_weeks_again():
 
 def test_the_date_is_that_of_the_first_alarm_and_a_change_may_grow():
     many = [seen(0, -0.04, shifted=-1), seen(1, -0.09, raised=-1), seen(2, -0.12, raised=-1)]
-    found = latched(many)
-    assert [(one.condition, one.since) for one in found] == [(SLIGHT, 0), (WORSE, 1), (WORSE, 1)]
+    assert latched(many) == [(SLIGHT, 0), (WORSE, 1), (WORSE, 1)]
 
 
 def test_looks_that_say_nothing_leave_the_condition():

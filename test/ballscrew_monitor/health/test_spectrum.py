@@ -8,14 +8,14 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.bands import load_band, severity_class, UNKNOWN_LOAD
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.records import SpectrumBin
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.spectrum import (
     count,
     merged_bins,
-    spectrum_settings,
+    sliding_of,
     SpectrumMemory,
-    SpectrumSettings,
     take_bins,
 )
 from hypothesis import given
@@ -30,7 +30,7 @@ HELD, DERIVED = 3, 4
 @pytest.fixture(name='spectrum')
 def count_rows(motion, surface):
     def spectrum(rows, **settings):
-        memory, bins, settings = SpectrumMemory(), [], SpectrumSettings(**settings)
+        memory, bins, settings = SpectrumMemory(), [], GatherSettings(**settings)
         for row in motion.single(rows):
             if not count(surface.tables, settings, memory, row, Found()):
                 bins += take_bins(memory)
@@ -111,11 +111,8 @@ def test_every_day_has_its_bins(spectrum, motion):
 
 
 def test_the_surface_states_the_sliding(surface):
-    assert math.isnan(spectrum_settings(types.SimpleNamespace(header={})).sliding)
-    header = {'sliding_m_per_rad': 2e-3}
-    assert spectrum_settings(types.SimpleNamespace(header=header), 7) == SpectrumSettings(
-        max_gap=7, sliding=2e-3
-    )
+    assert math.isnan(sliding_of(types.SimpleNamespace(header={})))
+    assert sliding_of(types.SimpleNamespace(header={'sliding_m_per_rad': 2e-3})) == 2e-3
 
 
 def bins():
