@@ -245,9 +245,8 @@ def statuses(
             warns = state.level == Level.WARN and _warns(policy, usual=known)
             for status in parts[1:2] if warns else parts[:2]:
                 _say(status, _stale(Fault.CLOCK_STANDS))
-        parts[0].values += key_values(_answers(state, surface, health, advice))
-        parts[0].values += key_values([(USUAL_EVENTS, ' '.join(map(str, usual)))])
-        parts[0].values += key_values([*_lubrication_values(state), *_with_drag(state, surface)])
+        values = _lubrication_values(state, surface, usual, health, advice)
+        parts[0].values += key_values([*values, *_with_drag(state, surface)])
         parts[1].values += key_values(_input_values(inputs))
     if defect:
         _say(parts[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
@@ -314,21 +313,6 @@ def _warns(policy: WarningPolicy, *, usual: bool) -> bool:
     return policy.of_zone and not (usual and policy.of_change)
 
 
-def _answers(
-    state: BallScrewState, surface: Surface, health: Health | None, advice: str
-) -> list[tuple[str, object]]:
-    """Return whether the axis is normal, whether it is outside the zone, and what to do."""
-    outside = outside_now(state, surface)
-    remedy = advice if outside is not Outside.NOT else ''
-    if not remedy and health is not None and health.condition in CHANGED:
-        remedy = health.advice
-    return [
-        ('Normal', normal_answer(health)),
-        ('Outside the zone', outside.value),
-        ('What to do', remedy),
-    ]
-
-
 def outside_now(state: BallScrewState, surface: Surface) -> Outside:
     """Return how surely the point of a state is outside the zone."""
     point, result = state.point, state.result
@@ -356,9 +340,24 @@ def _with_drag(state: BallScrewState, surface: Surface) -> list[tuple[str, objec
     return [('Efficiency with typical drag [-]', f'{middle:.3g} ({low:.3g} to {high:.3g})')]
 
 
-def _lubrication_values(state: BallScrewState) -> list[tuple[str, object]]:
+def _lubrication_values(
+    state: BallScrewState,
+    surface: Surface,
+    usual: Sequence[int],
+    health: Health | None,
+    advice: str,
+) -> list[tuple[str, object]]:
+    """Return whether the axis is normal, is outside the zone, and what to do; then numbers."""
     point, result, totals = state.point, state.result, state.totals
+    outside = outside_now(state, surface)
+    remedy = '' if outside is Outside.NOT else advice
+    if not remedy and health is not None and health.condition in CHANGED:
+        remedy = health.advice
     return [
+        ('Normal', normal_answer(health)),
+        ('Outside the zone', outside.value),
+        ('What to do', remedy),
+        (USUAL_EVENTS, ' '.join(map(str, usual))),
         ('Level', Level(state.level).name),
         ('Zone', Zone(state.zone).name),
         ('Validity', PointValidity(result.validity).name),

@@ -96,7 +96,18 @@ def findings(
     """Return a sentence for all that is wrong, after listening for `seconds` [s]."""
     inputs, around, found = tuple(inputs), surroundings, []
     if not around.nodes:
-        found.append(f'nobody else is seen in ROS domain {around.domain}: {_elsewhere(around)}')
+        cure = 'start the machine, or set ROS_DOMAIN_ID to its domain'
+        if around.domains:
+            cure = (
+                f'processes of this machine are in domain {", ".join(map(str, around.domains))}, '
+                f'set ROS_DOMAIN_ID={around.domains[0]}'
+            )
+        elif around.localhost_only:
+            cure = 'ROS_LOCALHOST_ONLY hides other machines, unset it'
+        elif around.discovery in ('LOCALHOST', 'OFF'):
+            variable = f'ROS_AUTOMATIC_DISCOVERY_RANGE={around.discovery}'
+            cure = f'{variable} hides other machines, set it to SUBNET'
+        found.append(f'nobody else is seen in ROS domain {around.domain}: {cure}')
     if around.use_sim_time and '/clock' not in around.topics:
         found.append(
             'use_sim_time is true and nobody publishes /clock: play /clock, or set it to false'
@@ -117,23 +128,6 @@ def findings(
     return found
 
 
-def _elsewhere(around: Surroundings) -> str:
-    """Return where the machine may be instead."""
-    if around.domains:
-        return (
-            f'processes of this machine are in domain {", ".join(map(str, around.domains))}, '
-            f'set ROS_DOMAIN_ID={around.domains[0]}'
-        )
-    if around.localhost_only:
-        return 'ROS_LOCALHOST_ONLY hides other machines, unset it'
-    if around.discovery in ('LOCALHOST', 'OFF'):
-        return (
-            f'ROS_AUTOMATIC_DISCOVERY_RANGE={around.discovery} hides other machines, '
-            'set it to SUBNET'
-        )
-    return 'start the machine, or set ROS_DOMAIN_ID to its domain'
-
-
 def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[str]:
     problems = []
     reason = link_reason(facts.link, facts.parameter)
@@ -151,9 +145,20 @@ def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[s
             f'{facts.parameter}: it is 0 or missing while {field} moves: set '
             f"{facts.parameter}.field to '{field}' and {facts.parameter}.unit to '{unit}'",
         ]
-    if facts.heard is not None:
-        problems += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
-    return problems
+    if facts.heard is None:
+        return problems
+    heard, text = facts.heard, ''
+    fine = heard.status.state in (InputState.OK, InputState.STALE)
+    if not heard.status.received:
+        silence = f'the publisher on {facts.link.topic} has sent nothing within {seconds:g} s'
+        text = f'{silence}: start it' if facts.timeout < seconds else ''
+    elif fine and heard.longest_gap > facts.timeout:
+        text = f'it {slow_reason(heard.longest_gap, facts.parameter)}'
+    else:
+        standing, text, _ = summary(facts.axis, (heard.status,), {facts.source: facts.link})
+        text = '' if standing is Standing.GOOD else text
+    problems += [f'{facts.parameter}: {text}'] if text else []
+    return [*problems, *unit_doubts(facts, heard)]
 
 
 def _ends(heard: Heard) -> tuple[float, float]:
@@ -175,18 +180,6 @@ def near_topic(link: Link, topics: Mapping[str, tuple[str, ...]]) -> str:
     like = difflib.get_close_matches(link.topic, topics, n=1, cutoff=NEAR)
     of_type = [name for name, types in topics.items() if link.type_name in types]
     return next(iter([*same, *like, *of_type]), '')
-
-
-def _of_health(facts: InputFacts, heard: Heard, seconds: float) -> list[str]:
-    topic = facts.link.topic
-    if not heard.status.received:
-        text = f'{facts.parameter}: the publisher on {topic} has sent nothing within {seconds:g} s'
-        return [f'{text}: start it'] if facts.timeout < seconds else []
-    fine = heard.status.state in (InputState.OK, InputState.STALE)
-    if fine and heard.longest_gap > facts.timeout:
-        return [f'{facts.parameter}: it {slow_reason(heard.longest_gap, facts.parameter)}']
-    standing, text, _ = summary(facts.axis, (heard.status,), {facts.source: facts.link})
-    return [] if standing is Standing.GOOD else [f'{facts.parameter}: {text}']
 
 
 def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[float, float] | None:

@@ -44,8 +44,8 @@ def health_message(health: Health, *, surface_id: str, policy: WarningPolicy) ->
         warning=warns(health, policy),
         verdict=health.verdict,
         advice=health.advice,
-        quantities=[_quantity(one) for one in health.quantities],
-        causes=[_cause(one) for one in health.causes],
+        quantities=[_quantity(quantity) for quantity in health.quantities],
+        causes=[_cause(cause) for cause in health.causes],
         notes=list(health.notes),
         surface_id=surface_id,
     )

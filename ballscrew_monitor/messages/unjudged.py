@@ -26,7 +26,25 @@ def reason_of(row: Any, surface: Surface) -> str:
         text = derived_text(row)
         if text or validity is PointValidity.UNKNOWN:
             return text
-    return _outside_text(validity, row, surface)
+    speed = f'speed {abs(float(row.speed)):.4g} rad/s'
+    slowest, fastest = surface.speed_range
+    if validity is PointValidity.SPEED_BELOW_RANGE:
+        return f'{speed} is below the surface, from {slowest:.4g} rad/s'
+    if validity is PointValidity.SPEED_ABOVE_RANGE:
+        return f'{speed} is above the surface, to {fastest:.4g} rad/s'
+    if validity is PointValidity.LOAD_OUT_OF_RANGE:
+        low, high = surface.load_range
+        load = opposing_load(float(row.axial_load), Direction(int(row.direction)))
+        return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
+    if validity is PointValidity.TEMPERATURE_OUT_OF_RANGE:
+        low, high = (celsius(limit) for limit in surface.temperature_range)
+        return (
+            f'oil temperature {celsius(float(row.temperature)):.4g} degC is outside the surface, '
+            f'{low:.4g} to {high:.4g} degC'
+        )
+    if validity is PointValidity.MASKED:
+        return 'the model did not converge near this point'
+    return 'the surface gives no reason'
 
 
 def point_or_reason(monitor: Monitor, now: int) -> Row | str:
@@ -83,26 +101,3 @@ def _missing_text(row: Any) -> str:
     if not lost:  # finite numbers with an infinite sum
         return 'an input is beyond any range'
     return f'no valid sample of {" and ".join(lost)}'
-
-
-def _outside_text(validity: PointValidity, row: Any, surface: Surface) -> str:
-    """Return where a row lies outside a surface."""
-    speed = f'speed {abs(float(row.speed)):.4g} rad/s'
-    slowest, fastest = surface.speed_range
-    if validity is PointValidity.SPEED_BELOW_RANGE:
-        return f'{speed} is below the surface, from {slowest:.4g} rad/s'
-    if validity is PointValidity.SPEED_ABOVE_RANGE:
-        return f'{speed} is above the surface, to {fastest:.4g} rad/s'
-    if validity is PointValidity.LOAD_OUT_OF_RANGE:
-        low, high = surface.load_range
-        load = opposing_load(float(row.axial_load), Direction(int(row.direction)))
-        return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
-    if validity is PointValidity.TEMPERATURE_OUT_OF_RANGE:
-        low, high = (celsius(limit) for limit in surface.temperature_range)
-        return (
-            f'oil temperature {celsius(float(row.temperature)):.4g} degC is outside the surface, '
-            f'{low:.4g} to {high:.4g} degC'
-        )
-    if validity is PointValidity.MASKED:
-        return 'the model did not converge near this point'
-    return 'the surface gives no reason'
