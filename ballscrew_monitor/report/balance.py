@@ -53,10 +53,22 @@ class Balance:
 
 def balance_of(sums: RowSums) -> Balance:
     """Return what contradicts itself, by the sums over all rows of an axis."""
-    both = np.reshape(sums.of_both, (TERMS, TERMS))
+    loads, torques, both = (
+        np.reshape(products, (TERMS, TERMS))
+        for products in (sums.of_load, sums.of_torque, sums.of_both)
+    )
     factor, explained = _slope(both, _LOAD, (_MOTION, _ONE))
     if both[_ONE, _ONE] < FEWEST or explained < CLEAR:
-        return Balance(turned=_turned_by_motion(sums))
+        # The load goes with the motion, or is not known.
+        drag, explained = _slope(torques, _MOTION, (_ONE,))
+        brakes = drag < 0.0 and explained >= CLEAR and _goes_both_ways(torques)
+        load, explained = _slope(loads, _MOTION, (_ONE,), of=_LOAD)
+        mean = loads[_LOAD, _ONE] / max(loads[_ONE, _ONE], 1.0)
+        aids = load < 0.0 and explained >= CLEAR and _goes_both_ways(loads)
+        aids &= abs(mean) < abs(load)  # in both directions
+        if brakes and aids:  # so it is if the load drives the screw, but for friction
+            return Balance(turned=Source.SPEED if drag < load else None)
+        return Balance(turned=Source.TORQUE if brakes else Source.LOAD if aids else None)
     friction, friction_explained = _slope(both, _MOTION, (_LOAD, _ONE))
     backward = friction < 0.0 and friction_explained >= CLEAR and _goes_both_ways(both)
     if factor < 0.0:
@@ -68,24 +80,6 @@ def balance_of(sums: RowSums) -> Balance:
     if not sums.friction_rows:
         return Balance(factor=factor)
     return Balance(factor=factor, friction=friction / (sums.friction / sums.friction_rows))
-
-
-def _turned_by_motion(sums: RowSums) -> Source | None:
-    """Return whose sign looks turned where the load goes with the motion, or is not known."""
-    loads, torques = (
-        np.reshape(products, (TERMS, TERMS)) for products in (sums.of_load, sums.of_torque)
-    )
-    drag, explained = _slope(torques, _MOTION, (_ONE,))
-    brakes = drag < 0.0 and explained >= CLEAR and _goes_both_ways(torques)
-    load, explained = _slope(loads, _MOTION, (_ONE,), of=_LOAD)
-    mean = loads[_LOAD, _ONE] / max(loads[_ONE, _ONE], 1.0)
-    aids = load < 0.0 and explained >= CLEAR and _goes_both_ways(loads)
-    aids &= abs(mean) < abs(load)  # in both directions
-    if brakes and aids:  # so it is if the load drives the screw, but for friction
-        return Source.SPEED if drag < load else None
-    if brakes:
-        return Source.TORQUE
-    return Source.LOAD if aids else None
 
 
 def _goes_both_ways(sums: Floats) -> bool:

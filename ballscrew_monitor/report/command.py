@@ -3,7 +3,7 @@
 """`ballscrew replay`: recordings judged without DDS, in words, as JSON, or as reports."""
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 import contextlib
 import json
 from pathlib import Path
@@ -12,7 +12,6 @@ from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
-from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.opener import opened_log
@@ -73,19 +72,18 @@ def check_most_unjudged(percentage: float) -> None:
 
 
 def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
-    """Judge recordings; return what JSON holds of them, and the exit code."""
-    if logs != args.logs or len(logs) > 1:  # a folder may hold one
-        many = _print_many if args.out is None else _report_many
-        return many(logs, args, nominal)
+    """
+    Judge recordings; return what JSON holds of them, and the exit code.
+
+    One of several that cannot be read does not stop the others.
+
+    """
+    alone = logs == args.logs and len(logs) == 1  # a folder may hold one
     if args.out is not None:
-        return _report_one(args, nominal, logs[0])
-    return _print_one(args, nominal, logs[0], args.map)
-
-
-def _print_many(
-    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
-) -> tuple[Records, int]:
-    """Print what each recording comes to; one that cannot be read does not stop the others."""
+        report = _report_one if alone else _report_many
+        return report(logs, args, nominal)
+    if alone:
+        return _print_one(args, nominal, logs[0], args.map)
     codes, records = [], {}
     for log in logs:
         if not args.json:
@@ -111,17 +109,31 @@ def _print_one(
     with shown_progress(bag.duration) as on_done:
         judged = judge_log(bag, parameters, on_share=on_done)
     _say_notes(judged.notes, parameters)
-    say(*(_silences(bag, parameters.values, judged) if judged.unjudged else ()))
+    if judged.unjudged:
+        values = with_types(parameters.values, bag.types)
+        axes = {axis.name: axis for axis in axes_for(bag, values)}
+        cases = {case.axis: case for case in judged.axes}
+        for name in judged.unjudged:
+            case, fault = cases.get(name), silence(bag, axes[name])
+            why = f'topics, fields and joints of its parameters must be those of {bag.path}'
+            why += f'; {fault}' if fault else ''
+            if case is not None and never_moved(case):
+                why = 'it never moved'
+            elif case is not None and case.outcome.reason and not fault:
+                why = case.outcome.reason
+            say(f'nothing was judged on axis {name}: {why}')
     if not args.json:
         print(printable('\n'.join(log_lines(judged))))
     code = _code(log, judged, unjudged_share(judged), args)
     return printed_records(summary_record(judged)), code
 
 
-def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
+def _report_one(
+    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
+) -> tuple[Records, int]:
     from ballscrew_monitor.report.log_report import report_log
 
-    bag = opened_log(log, mapping=args.map)
+    bag = opened_log(logs[0], mapping=args.map)
     parameters = parameters_for(bag, args.params, nominal)
     _say_origin(parameters)
     with shown_progress(bag.duration) as on_done:
@@ -133,7 +145,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
         print(printable(line.verdict))
     say(*(f'check {hint}' for hint in result.hints))
     print(f'report in {args.out / PAGE}')
-    return _reported(args.out, args), _code(log, result, result.unjudged_share, args)
+    return _reported(args.out, args), _code(logs[0], result, result.unjudged_share, args)
 
 
 def _report_many(
@@ -185,21 +197,6 @@ def _reported(folder: Path, args: argparse.Namespace) -> Records:
     if not args.json:
         return {}
     return printed_records(json.loads((folder / SUMMARY).read_text(encoding='utf-8')))
-
-
-def _silences(bag: Bag, values: Mapping[str, Any], log: LogCase) -> Iterator[str]:
-    """Yield why nothing was judged on an axis, for each such axis."""
-    axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}
-    cases = {case.axis: case for case in log.axes}
-    for name in log.unjudged:
-        case, fault = cases.get(name), silence(bag, axes[name])
-        why = f'topics, fields and joints of its parameters must be those of {bag.path}'
-        why += f'; {fault}' if fault else ''
-        if case is not None and never_moved(case):
-            why = 'it never moved'
-        elif case is not None and case.outcome.reason and not fault:
-            why = case.outcome.reason
-        yield f'nothing was judged on axis {name}: {why}'
 
 
 def _say_origin(parameters: LogParameters) -> None:

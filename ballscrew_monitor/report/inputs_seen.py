@@ -148,7 +148,43 @@ class InputSeen:
 
 def inputs_seen(case: AxisCase) -> list[InputSeen]:
     """Return all inputs of an axis, also those that it does not have."""
-    return [_seen(case, source) for source in NAMES]
+    inputs = []
+    for source in NAMES:
+        setting, sources = case.inputs.get(source), case.survey.sources[source]
+        if setting is None:
+            inputs.append(_without_topic(case, source, sources))
+            continue
+        status = next(status for status in case.outcome.inputs if status.source is source)
+        heard = _heard(setting, case.survey.inputs[source], status)
+        refusals, origin = case.outcome.refused.get(source, {}), _origin(case, source)
+        refused = sum(refusals.values())
+        if status.received == refused:
+            origin = 'never valid' if refused else 'never received'
+        input_seen = InputSeen(
+            source=source,
+            origin=origin,
+            measured=origin == MEASURED,
+            place=f'{setting.topic}: {setting.field}',
+            unit=setting.unit,
+            low=heard.low,
+            high=heard.high,
+            rate=_rate(case, source),
+            rate_assumed='time.rate_Hz' in case.facts.assumed,
+            received=status.received,
+            refused=', '.join(
+                f'{count} {why.fault.counted}' for why, count in refusals.items() if count
+            ),
+            left_out=status.dropped - refused,
+            lost=status.lost if case.numbered else None,
+            numbered=case.numbered,
+            lag=status.lag,
+            slow=status.slow,
+            gaps=case.survey.gaps[source],
+            hints=tuple(_hints(case, source, setting, heard)),
+            ledger=ledger_of(case, source),
+        )
+        inputs.append(input_seen)
+    return inputs
 
 
 def missing_inputs(case: AxisCase) -> list[str]:
@@ -163,39 +199,6 @@ def missing_inputs(case: AxisCase) -> list[str]:
 def hints_on(cases: Iterable[AxisCase]) -> list[str]:
     """Return what looks wrong with any input of axes, and what mends it."""
     return [hint for case in cases for seen in inputs_seen(case) for hint in seen.hints]
-
-
-def _seen(case: AxisCase, source: Source) -> InputSeen:
-    setting, sources = case.inputs.get(source), case.survey.sources[source]
-    if setting is None:
-        return _without_topic(case, source, sources)
-    status = next(status for status in case.outcome.inputs if status.source is source)
-    heard = _heard(setting, case.survey.inputs[source], status)
-    origin = _origin(case, source)
-    refused = sum(case.outcome.refused.get(source, {}).values())
-    if status.received == refused:
-        origin = 'never valid' if refused else 'never received'
-    return InputSeen(
-        source=source,
-        origin=origin,
-        measured=origin == MEASURED,
-        place=f'{setting.topic}: {setting.field}',
-        unit=setting.unit,
-        low=heard.low,
-        high=heard.high,
-        rate=_rate(case, source),
-        rate_assumed='time.rate_Hz' in case.facts.assumed,
-        received=status.received,
-        refused=_refused(case, source),
-        left_out=status.dropped - refused,
-        lost=status.lost if case.numbered else None,
-        numbered=case.numbered,
-        lag=status.lag,
-        slow=status.slow,
-        gaps=case.survey.gaps[source],
-        hints=tuple(_hints(case, source, setting, heard)),
-        ledger=ledger_of(case, source),
-    )
 
 
 def _rate(case: AxisCase, source: Source) -> float:
@@ -259,11 +262,6 @@ def _heard(setting: InputSetting, span: Extremes, status: InputStatus) -> Heard:
     scaling = setting.scalings[setting.unit]
     ends = [(value - scaling.shift) / scaling.factor for value in (span.low, span.high)]
     return Heard(status=status, low=min(ends), high=max(ends))
-
-
-def _refused(case: AxisCase, source: Source) -> str:
-    refused = case.outcome.refused.get(source, {})
-    return ', '.join(f'{count} {why.fault.counted}' for why, count in refused.items() if count)
 
 
 def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) -> Sequence[str]:

@@ -107,7 +107,7 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
 def _messages(case: AxisCase, source: Source) -> MessageCounts:
     if source in case.outcome.messages:
         return case.outcome.messages[source]
-    status = next(one for one in case.outcome.inputs if one.source is source)
+    status = next(status for status in case.outcome.inputs if status.source is source)
     return MessageCounts(heard=status.received, left_out=status.dropped)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.declared import plain
-from ballscrew_monitor.recordings.summary import EventRecord, Summary
+from ballscrew_monitor.recordings.summary import Summary
 from ballscrew_monitor.recordings.words import duration, NONE, number, share
 from ballscrew_monitor.report import buckets, provenance, time_series
 from ballscrew_monitor.report.buckets import axis_budgets, AxisBudget
@@ -150,50 +150,33 @@ def events_part(case: AxisCase, most: int) -> Markup:
     events = case.worst_first[:most]
     if not events:
         return joined(element('h3', 'Warnings'), element('p', 'None.'))
-    count = len(case.outcome.events)
-    cut = f' The worst {most} of {count} are shown.' if count > most else ''
-    worst = events[0].event_id
-    in_order = sorted(events, key=lambda event: event.event_id)
+    count, worst, rows = len(case.outcome.events), events[0].event_id, []
     advised = any(event.advice for event in events)
-    rows = (_event_row(case, event, event.event_id == worst, advised) for event in in_order)
-    heads = 'No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'Worst at'
-    return joined(
-        element('h3', f'Warnings: {count}'),
-        element(
-            'p',
-            'A click on a row shows that moment in the charts. The worst one is marked.'
-            + cut
-            + LASTING,
-            class_='muted',
-        ),
-        table((*heads, 'What to do') if advised else heads, rows, kind='leading sortable'),
-    )
-
-
-def _event_row(case: AxisCase, event: EventRecord, worst: bool, advised: bool) -> TableRow:
-    """Return the row of an event, with its advice if any event of the table is `advised` on."""
-    begin, shown = case.since_first(event.start), case.shown(event)
-    metal = event.quantity == RCS
-    cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
-    lasts = number(event.duration, 4)
-    lasts += ' and still on' if event.active else ', the run ended' if event.run_ended else ''
-    return TableRow(
-        (
+    for event in sorted(events, key=lambda event: event.event_id):
+        begin, (first, last) = case.since_first(event.start), case.shown(event)
+        metal = event.quantity == RCS
+        lasts = number(event.duration, 4)
+        lasts += ' and still on' if event.active else ', the run ended' if event.run_ended else ''
+        limit = f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}'
+        cells = (
             TableCell(str(event.event_id), kind='number', value=event.event_id),
             TableCell(f'{begin:.2f}', kind='number', value=begin),
             TableCell(lasts, kind='number', value=event.duration),
-            cause,
+            'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})',
             TableCell(event.shown(event.worst_value), kind='short', value=badness(event)[0]),
-            TableCell(
-                text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
-                kind='short',
-            ),
+            TableCell(text=limit, kind='short'),
             case.in_its_unit(event.place) or NONE,
             *([case.in_its_unit(event.advice) or NONE] if advised else []),
-        ),
-        begin=shown[0],
-        end=shown[1],
-        kind='bad' if worst else '',
+        )
+        kind = 'bad' if event.event_id == worst else ''
+        rows.append(TableRow(cells, begin=first, end=last, kind=kind))
+    heads = 'No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'Worst at'
+    note = 'A click on a row shows that moment in the charts. The worst one is marked.'
+    note += f' The worst {most} of {count} are shown.' if count > most else ''
+    return joined(
+        element('h3', f'Warnings: {count}'),
+        element('p', note + LASTING, class_='muted'),
+        table((*heads, 'What to do') if advised else heads, rows, kind='leading sortable'),
     )
 
 
@@ -259,11 +242,19 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
 
 
 def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:
+    recorded = 'No axis could be judged.'
+    if any(math.isnan(case.begins) for case in log.axes):
+        span = max(case.survey.span for case in log.axes)
+        recorded = f'Recorded over {span:.1f} s, without a date.'
+    elif log.axes:
+        first = clock_text(min(case.survey.first for case in log.axes)).removesuffix(' UTC')
+        last = clock_text(max(case.survey.last for case in log.axes))
+        recorded = f'Recorded from {first} to {last}.'
     axes = enumerate(zip(log.axes, maps, budgets, strict=True))
     return element(
         'main',
         element('h1', f'Ball screw report: {log.name}'),
-        element('p', _when(log), class_='muted'),
+        element('p', recorded, class_='muted'),
         *(verdict_part(verdict) for verdict in verdicts_of(log)),
         *provenance.checks(log.axes),
         *provenance.caution(log.axes),
@@ -277,17 +268,6 @@ def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudg
 
 def _id(number: int) -> str:
     return f'axis-{number}'
-
-
-def _when(log: LogCase) -> str:
-    if not log.axes:
-        return 'No axis could be judged.'
-    if any(math.isnan(case.begins) for case in log.axes):
-        recorded = max(case.survey.span for case in log.axes)
-        return f'Recorded over {recorded:.1f} s, without a date.'
-    first = min(case.survey.first for case in log.axes)
-    last = max(case.survey.last for case in log.axes)
-    return f'Recorded from {clock_text(first).removesuffix(" UTC")} to {clock_text(last)}.'
 
 
 def _axis_part(

@@ -32,14 +32,14 @@ from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import AxisHistory, health_after
 from ballscrew_monitor.report.inputs_seen import hints_on, missing_inputs
 from ballscrew_monitor.report.judged_bag import judged_bag
-from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare, RCS
+from ballscrew_monitor.report.judging import badness, judge_log, LogCase, OnShare, RCS
 from ballscrew_monitor.report.ledger import speed_ledger, unjudged_share
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.row_table import RowStore
-from ballscrew_monitor.report.verdict import AxisVerdict, VerdictKind, verdicts_of
+from ballscrew_monitor.report.verdict import VerdictKind, verdicts_of
 from surrogate.files import json_text, new_file, new_folder, replace_file
 
 PREFIX, LOCK = '.rows-', 'lock'
@@ -239,10 +239,36 @@ def write_events(path: Path, log: LogCase) -> None:
 
 def _result(log: LogCase) -> LogResult:
     cases = {case.axis: case for case in log.axes}
-    lines = [
-        _axis_line(MachineAxis(log.machine, axis), verdict, cases.get(axis))
-        for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
-    ]
+    lines = []
+    for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True):
+        line = AxisLine(
+            axis=axis,
+            standing=verdict.standing.value,
+            verdict=verdict.whole,
+            machine=log.machine,
+            remedy=verdict.remedy,
+            normal=verdict.normal,
+        )
+        if case := cases.get(axis):
+            summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
+            ledger = speed_ledger(case)
+            line = dataclasses.replace(
+                line,
+                expected=ledger.expected if ledger else 0,
+                judged=ledger.judged if ledger else 0,
+                losses=ledger.words if ledger else '',
+                missing=missing_inputs(case),
+                begins=case.begins,
+                recorded=case.survey.span,
+                running_time=math.nan if summary is None else summary.running_time,
+                outside_time=case.outside_time,
+                surely_outside=min(case.surely_outside, case.outside_time),
+                warnings=len(case.outcome.events),
+                places=[place for place in map(_place, case.outcome.events) if place is not None],
+                worst=f'{worst.quantity} {worst.shown(worst.worst_value)}' if worst else '',
+                depth=badness(worst)[0] if worst else math.nan,
+            )
+        lines.append(line)
     return LogResult(
         name=log.name,
         lines=lines,
@@ -252,39 +278,6 @@ def _result(log: LogCase) -> LogResult:
         unjudged_share=unjudged_share(log),
         missed_share=log.missed_share,
         histories=[case.history for case in log.axes if case.history],
-    )
-
-
-def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
-    machine, axis = key
-    standing = verdict.standing.value
-    line = AxisLine(
-        axis=axis,
-        standing=standing,
-        verdict=verdict.whole,
-        machine=machine,
-        remedy=verdict.remedy,
-        normal=verdict.normal,
-    )
-    if case is None:
-        return line
-    summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
-    ledger = speed_ledger(case)
-    return dataclasses.replace(
-        line,
-        expected=ledger.expected if ledger else 0,
-        judged=ledger.judged if ledger else 0,
-        losses=ledger.words if ledger else '',
-        missing=missing_inputs(case),
-        begins=case.begins,
-        recorded=case.survey.span,
-        running_time=math.nan if summary is None else summary.running_time,
-        outside_time=case.outside_time,
-        surely_outside=min(case.surely_outside, case.outside_time),
-        warnings=len(case.outcome.events),
-        places=[place for place in map(_place, case.outcome.events) if place is not None],
-        worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
-        depth=math.nan if worst is None else badness(worst)[0],
     )
 
 

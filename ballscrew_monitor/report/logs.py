@@ -99,7 +99,16 @@ def left_out(
     reasons: dict[str, list[str]] = {}
     for folder in paths:
         for file in _others(folder, logs, out):
-            reasons.setdefault(_why_not(file, tables=tables), []).append(str(file))
+            why = 'their ending is none of a bag, and tables are judged by a --map'
+            if not file.stat().st_size:
+                why = 'they are empty'
+            elif file.suffix.lower() in NO_LOGS:
+                why = 'their ending is that of no recording'
+            elif is_table(file):
+                why = 'tables are judged by a --map'
+            elif tables:
+                why = 'they hold neither messages nor rows of numbers'
+            reasons.setdefault(why, []).append(str(file))
     parts = []
     for why, names in reasons.items():
         more = f' and {len(names) - MOST_NAMED} more' if len(names) > MOST_NAMED else ''
@@ -117,18 +126,6 @@ def _others(folder: Path, logs: Sequence[Path], out: Path | None) -> Iterator[Pa
             yield file
     for child in _folders(folder, out):
         yield from _others(child, logs, out)
-
-
-def _why_not(file: Path, *, tables: bool) -> str:
-    if not file.stat().st_size:
-        return 'they are empty'
-    if file.suffix.lower() in NO_LOGS:
-        return 'their ending is that of no recording'
-    if is_table(file):
-        return 'tables are judged by a --map'
-    if tables:
-        return 'they hold neither messages nor rows of numbers'
-    return 'their ending is none of a bag, and tables are judged by a --map'
 
 
 def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:

@@ -120,7 +120,7 @@ def _health(
 ) -> tuple[list[Markup], list[Markup]]:
     peers = peers_among([history for entry in entries for history in entry.histories], titles)
     first = [verdict_box(course[-1]) for course in courses.values()]
-    first += [element('p', one.text, class_='hint') for one in peers if one.is_apart]
+    first += [element('p', peer.text, class_='hint') for peer in peers if peer.is_apart]
     trends = [drawn for course in courses.values() for drawn in health_trends(course)]
     return first, [*trends, *peers_table(peers)]
 
@@ -138,7 +138,7 @@ def _verdict(entries: Sequence[LogResult], listed: Sequence[Listed]) -> Markup:
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     worst = {**counts, 'unknown': counts['unknown'] + lost}
-    kind = next((one for one in ('bad', 'perhaps', 'usual', 'unknown') if worst[one]), 'good')
+    kind = next((kind for kind in MARKS if kind != 'good' and worst[kind]), 'good')
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
@@ -187,28 +187,24 @@ def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
     pictures = []
     for axis in dict.fromkeys(line.key for _, line in listed):
         own = [pair for pair in listed if pair[1].key == axis]
-        marks = [
-            _mark(one, line)
-            for one, line in own
-            if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0
-        ]
+        marks = []
+        for entry, line in own:
+            if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0:
+                part = line.outside_time / line.running_time
+                mark = Mark(
+                    at=line.begins,
+                    value=part,
+                    kind=MARKS[line.standing],
+                    title=f'{entry.name}, {_date(line.begins)}: {percent(part)} outside',
+                    link=f'{quote(entry.folder)}/{PAGE}',
+                )
+                marks.append(mark)
         if drawn := trend(marks):
             times = (line.running_time for _, line in own if math.isfinite(line.running_time))
-            most = max(one.value for one in marks)
+            most = max(mark.value for mark in marks)
             text = f'{duration(math.fsum(times))} in motion; the highest point is {percent(most)}.'
             pictures += [element('h3', f'Axis {titles[axis]}'), drawn]
             pictures.append(element('p', text, class_='muted'))
     if pictures:
         yield element('h2', 'Share of the motion outside the optimal zone, over dates')
         yield from pictures
-
-
-def _mark(entry: LogResult, line: AxisLine) -> Mark:
-    part = line.outside_time / line.running_time
-    return Mark(
-        at=line.begins,
-        value=part,
-        kind=MARKS[line.standing],
-        title=f'{entry.name}, {_date(line.begins)}: {percent(part)} outside',
-        link=f'{quote(entry.folder)}/{PAGE}',
-    )

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters with which a recording is judged, their origin, and their assumptions."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 from pathlib import Path
@@ -106,18 +106,25 @@ class LogParameters:
         return re.sub(r'\S*/', '', self.origin)
 
 
-def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters:
+def parameters_for(bag: Bag, params: Path | None, nominal: Path) -> LogParameters:
     """
     Return the parameters for a recording: those given, else its own, else the nominal ones.
 
     Raises InputError for a file that cannot be read, and for metadata that are damaged.
 
     """
-    chosen = log_facts.values_for(bag, given, nominal)
+    chosen = log_facts.values_for(bag, params, nominal)
     facts, assumptions = log_facts.facts_of(bag), {}
     chosen, still = _by_position(bag, chosen) if facts is None else (chosen, ())
     if facts is not None:
-        facts = dataclasses.replace(facts, assumptions=tuple(_still_assumed(facts, chosen)))
+        # Other parameters take the place of assumptions.
+        given = flatten(facts.mapping.get('parameters') or {})
+        still_assumed = []
+        for assumption in facts.assumptions:
+            axis, _, place = assumption.key.partition('.')
+            known = place in OF_NODE and (chosen.is_given or f'{axis}.{OF_NODE[place]}' in given)
+            still_assumed += [] if known else [assumption]
+        facts = dataclasses.replace(facts, assumptions=tuple(still_assumed))
         assumptions = {
             assumption.key: {'value': assumption.value, 'reason': assumption.reason}
             for assumption in facts.assumptions
@@ -147,15 +154,6 @@ def _by_position(bag: Bag, chosen: ChosenValues) -> tuple[ChosenValues, tuple[st
         notes.append(still_speed(axis, values[f'{axis}.speed.field'], field, unit))
         values |= {f'{axis}.speed.field': field, f'{axis}.speed.unit': unit}
     return dataclasses.replace(chosen, values=values), tuple(notes)
-
-
-def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:
-    """Yield the assumptions of a log without those that other parameters take the place of."""
-    given = flatten(facts.mapping.get('parameters') or {})
-    for assumption in facts.assumptions:
-        axis, _, place = assumption.key.partition('.')
-        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in given):
-            yield assumption
 
 
 def _axis_facts(

@@ -17,7 +17,7 @@ from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows, p
 from ballscrew_monitor.report.verdict import verdict_of
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, to_rgba
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
@@ -52,37 +52,29 @@ def draw_log(log: LogCase, maps: Sequence[OperatingMap], path: Path) -> None:
 def figure_log(log: LogCase, maps: Sequence[OperatingMap]) -> Figure:
     """Return the axes of a recording side by side; there is at least one."""
     figure = new_figure(WIDTH * len(maps), HEIGHT)
-    for part, case, chart in zip(
-        figure.subfigures(1, len(maps), squeeze=False)[0], log.axes, maps, strict=True
-    ):
-        _draw_axis(part, case, chart)
+    parts = figure.subfigures(1, len(maps), squeeze=False)[0]
+    for part, case, chart in zip(parts, log.axes, maps, strict=True):
+        upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
+        axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
+        axes.set_title(
+            f'{verdict.whole}\n{textwrap.fill(verdict.contact, LINE)}\n'
+            f'screw {surface.screw_name}, oil {surface.oil_name}, '
+            f'{surface.tier.replace("_", "-")} model, map at {chart.temperature:g} °C oil',
+            fontsize=11,
+        )
+        _draw_map(axes, case, chart)
+        rows, shown = drawn_rows(case), panels(case)
+        heights = 80, *(panel['height'] for panel in shown)
+        strips = lower.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+        _draw_bars(strips[0], case, rows)
+        shade = {'color': COLOURS['outside'], 'alpha': 0.14, 'linewidth': 0.0, 'zorder': 0}
+        for strip, panel in zip(strips[1:], shown, strict=True):
+            _draw_panel(strip, panel, rows)
+            for event in case.outcome.events if not panel['bands'] else ():
+                strip.axvspan(*case.span(event), **shade)
+        strips[-1].set_xlim(0.0, case.survey.length or 1.0)
+        strips[-1].set_xlabel('time [s]')
     return figure
-
-
-def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
-    upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
-    axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
-    axes.set_title(
-        f'{verdict.whole}\n{textwrap.fill(verdict.contact, LINE)}\n'
-        f'screw {surface.screw_name}, oil {surface.oil_name}, '
-        f'{surface.tier.replace("_", "-")} model, map at {chart.temperature:g} °C oil',
-        fontsize=11,
-    )
-    _draw_map(axes, case, chart)
-    rows = drawn_rows(case)
-    shown = panels(case)
-    strips = lower.subplots(
-        1 + len(shown), 1, sharex=True, height_ratios=(80, *(panel['height'] for panel in shown))
-    )
-    _draw_bars(strips[0], case, rows)
-    for strip, panel in zip(strips[1:], shown, strict=True):
-        _draw_panel(strip, panel, rows)
-        for event in case.outcome.events if not panel['bands'] else ():
-            strip.axvspan(
-                *case.span(event), color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0
-            )
-    strips[-1].set_xlim(0.0, case.survey.length or 1.0)
-    strips[-1].set_xlabel('time [s]')
 
 
 def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
@@ -110,14 +102,7 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
             mark['speed'], mark['load'], str(mark['number']), bbox=circle, zorder=8, **CENTRED
         )
     axes.set(xlim=chart.speed, ylim=chart.load)
-    _draw_speeds(axes, chart)
-    axes.set_ylabel('axial load [N]: assists | opposes')
-    entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
-    _legend(axes, entries, -0.1)
-
-
-def _draw_speeds(axes: Axes, chart: OperatingMap) -> None:
-    """Write speeds below the map, as feeds if the log speaks of these, then turns above it."""
+    # Speeds stand below the map, as feeds if the log speaks of these, then turns above it.
     axes.minorticks_off()
     axes.set_xlabel('screw speed, either direction [rev/min]')
     if chart.feed:
@@ -127,6 +112,9 @@ def _draw_speeds(axes: Axes, chart: OperatingMap) -> None:
         above.set_xlabel('screw speed [rev/min]', fontsize=8)
         axes.set_xlabel('feed, either direction [m/min]')
     axes.set_xticks(*_ticks(chart, chart.feed or 1.0))
+    axes.set_ylabel('axial load [N]: assists | opposes')
+    entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
+    _legend(axes, entries, -0.1)
 
 
 def _ticks(chart: OperatingMap, unit: float) -> tuple[list[float], list[str]]:

@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.recordings.words import number, shown_unit
-from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.inputs_seen import inputs_seen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.ledger import Ledger, speed_ledger
 from ballscrew_monitor.report.survey import REST
@@ -51,10 +51,23 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
     seen = inputs_seen(case)
     yield from (_line('check', hint) for input_seen in seen for hint in input_seen.hints)
     yield from [] if summary is None else map(case.in_its_unit, summary.lines())
-    yield from (_line('input', _input_text(input_seen)) for input_seen in seen)
-    yield from (
-        _line('ledger', _ledger_text(input_seen)) for input_seen in seen if input_seen.ledger
-    )
+    for input_seen in seen:
+        parts, unit = [input_seen.origin], shown_unit(input_seen.unit)
+        if math.isfinite(input_seen.low):
+            parts.append(f'{number(input_seen.low, 4)} to {number(input_seen.high, 4)} {unit}')
+        if math.isfinite(input_seen.rate):
+            assumed = ' assumed' if input_seen.rate_assumed else ''
+            parts.append(f'{number(input_seen.rate, 4)} Hz{assumed}')
+        parts += [SAID[trouble].format(text) for trouble, text in input_seen.troubles.items()]
+        parts += [f'refused {input_seen.refused}'] if input_seen.refused else []
+        yield _line('input', f'{NAMES[input_seen.source].lower()}: {", ".join(parts)}')
+    for input_seen in seen:
+        if ledger := input_seen.ledger:
+            promised = 'no number' if ledger.promised is None else str(ledger.promised)
+            counts = f'{promised} promised, {ledger.present} present, {ledger.read} read'
+            rest = f'; {ledger.words}' if ledger.losses or ledger.missed else ''
+            name = NAMES[input_seen.source].lower()
+            yield _line('ledger', f'{name}: {counts}, {ledger.judged} judged{rest}')
     yield from (
         _line('not judged', f'{number(time, 4)} s: {reason.text}')
         for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
@@ -68,36 +81,13 @@ def _line(head: str, text: str) -> str:
     return f'{head:{HEAD}}{text}'
 
 
-def _input_text(seen: InputSeen) -> str:
-    parts = [seen.origin]
-    if math.isfinite(seen.low):
-        parts.append(f'{number(seen.low, 4)} to {number(seen.high, 4)} {shown_unit(seen.unit)}')
-    if math.isfinite(seen.rate):
-        parts.append(f'{number(seen.rate, 4)} Hz{" assumed" if seen.rate_assumed else ""}')
-    parts += [SAID[trouble].format(text) for trouble, text in seen.troubles.items()]
-    if seen.refused:
-        parts.append(f'refused {seen.refused}')
-    return f'{NAMES[seen.source].lower()}: {", ".join(parts)}'
-
-
-def _ledger_text(seen: InputSeen) -> str:
-    ledger = seen.ledger
-    assert ledger is not None
-    promised = 'no number' if ledger.promised is None else str(ledger.promised)
-    rest = f'; {ledger.words}' if ledger.losses or ledger.missed else ''
-    return (
-        f'{NAMES[seen.source].lower()}: {promised} promised, {ledger.present} present, '
-        f'{ledger.read} read, {ledger.judged} judged{rest}'
-    )
-
-
 def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return of the summary of a recording what is printed: its axes, with their totals first."""
     records = dict(summary['axes'])
     for axis, record in records.items():
         if isinstance(record, Mapping):
             rest = {key: value for key, value in record.items() if key != 'totals'}
-            rest |= {key: one for key in PARTS if (one := summary.get(key))}
+            rest |= {key: part for key in PARTS if (part := summary.get(key))}
             records[axis] = {'axis': axis, **(record['totals'] or {}), **rest}
     return records
 
@@ -140,13 +130,15 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
             without('totals', 'no state was reached')
             if summary is None
             # Without the axis, which is named around them.
-            else {'totals': {key: one for key, one in summary.record().items() if key != 'axis'}}
+            else {
+                'totals': {key: total for key, total in summary.record().items() if key != 'axis'}
+            }
         ),
         'energy_lost_by_zone_J': plain(survey.energy),
         'time_by_reason_s': plain(survey.reasons),
         'time_without_rows_s': survey.rest,
         'torque_residual': plain(survey.torque),
-        'inputs': plain({one.source: one for one in inputs_seen(case)}),
+        'inputs': plain({each.source: each for each in inputs_seen(case)}),
     }
 
 

@@ -16,9 +16,8 @@ from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.log_facts import grouped
 from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
 from ballscrew_monitor.report.buckets import MOST_ROWS
-from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase
-from ballscrew_monitor.report.ledger import Ledger
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.survey import REST
 from surrogate.units import MILLI
@@ -93,40 +92,49 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
 
 def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     """Return what the verdict stands on: model, screw, oil, limits, and what was assumed."""
-    surface, limits = case.surface, case.settings.limits
+    surface, limits, oil = case.surface, case.settings.limits, case.survey.oil
+    conditions = [
+        (
+            NAMES[seen.source],
+            f'{seen.origin}, {seen.place}' if seen.place else seen.origin,
+            seen.known,
+        )
+        for seen in inputs_seen(case)
+        if seen.source in (Source.TEMPERATURE, Source.LOAD)
+    ]
+    if math.isfinite(oil.mean):
+        low, high = celsius(oil.low), celsius(oil.high)
+        span = f'{low:.3g} °C' if low == high else f'{low:.3g} to {high:.3g} °C'
+        conditions.append(('Oil in motion', span, conditions[1][2]))
+    applied = (
+        f'RCS below {limits.rcs:g}, efficiency from {100 * limits.efficiency:g} %, '
+        f'judged from {limits.light_load:.4g} N and {limits.standstill_speed:g} rad/s on'
+    )
     facts = [
         ('Model', TIERS.get(surface.tier, surface.tier), _stated(case, 'surface')),
         ('Screw', surface.screw_name, _stated(case, 'screw')),
         *_leads(case),
         ('Preload', f'{surface.preload:g} N', _stated(case, 'screw')),
         ('Oil', surface.oil_name, _stated(case, 'oil')),
-        *_conditions(case),
-        (
-            'Limits',
-            f'RCS below {limits.rcs:g}, efficiency from {100 * limits.efficiency:g} %, '
-            f'judged from {limits.light_load:.4g} N and {limits.standstill_speed:g} rad/s on',
-            _stated(case, 'limits'),
-        ),
+        *conditions,
+        ('Limits', applied, _stated(case, 'limits')),
         ('Parameters', parameters, _stated(case, 'parameters')),
     ]
-    rows = [_fact_row(*fact) for fact in facts]
-    rows += [
-        _fact_row(
-            f'Assumed: {key}',
-            f'{assumption.get("value")}: {assumption.get("reason", "")}',
-            'assumed',
-        )
-        for key, assumption in case.facts.assumed.items()
-    ]
+    for key, assumption in case.facts.assumed.items():
+        value = f'{assumption.get("value")}: {assumption.get("reason", "")}'
+        facts.append((f'Assumed: {key}', value, 'assumed'))
+    rows = (
+        TableRow((name, value, element('span', known, class_=TAGS[known])))
+        for name, value, known in facts
+    )
+    note = (
+        'Screw, oil and model are those of the parameters; nothing in a recording tells whether '
+        'the machine has them.'
+    )
     return joined(
         element('h3', 'What this rests on'),
         table(('What', 'Value', 'Known how'), rows),
-        element(
-            'p',
-            'Screw, oil and model are those of the parameters; nothing in a recording tells '
-            'whether the machine has them.',
-            class_='muted',
-        ),
+        element('p', note, class_='muted'),
     )
 
 
@@ -145,24 +153,6 @@ def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
         ('Lead', f'{MILLI * case.facts.lead:g} mm', known),
         ('Lead of the surface', text, 'contradiction'),
     ]
-
-
-def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
-    rows = []
-    for seen in inputs_seen(case):
-        if seen.source in (Source.TEMPERATURE, Source.LOAD):
-            text = f'{seen.origin}, {seen.place}' if seen.place else seen.origin
-            rows.append((NAMES[seen.source], text, seen.known))
-    oil = case.survey.oil
-    if math.isfinite(oil.mean):
-        low, high = celsius(oil.low), celsius(oil.high)
-        span = f'{low:.3g} °C' if low == high else f'{low:.3g} to {high:.3g} °C'
-        rows.append(('Oil in motion', span, rows[1][2] if len(rows) > 1 else 'assumed'))
-    return rows
-
-
-def _fact_row(name: str, value: str, known: str) -> TableRow:
-    return TableRow((name, value, element('span', known, class_=TAGS[known])))
 
 
 def torque_part(case: AxisCase) -> Markup:
@@ -201,64 +191,45 @@ def torque_part(case: AxisCase) -> Markup:
 
 
 def inputs_part(case: AxisCase) -> Markup:
-    """Return what the inputs were like, and what interrupted them."""
-    seen = inputs_seen(case)
+    """Return what the inputs were like, what interrupted them, and what became of messages."""
+    inputs, ledgers, seen = [], [], inputs_seen(case)
+    for each in seen:
+        cells = (
+            TableCell(element('span', each.origin, class_=TAGS[each.known]), kind='place'),
+            TableCell(number(each.low, 4), kind='short'),
+            TableCell(number(each.high, 4), kind='short'),
+            TableCell(shown_unit(each.unit), kind='short'),
+            TableCell(
+                number(each.rate, 4) + (' assumed' if each.rate_assumed else ''), kind='number'
+            ),
+            TableCell(each.place, kind='place'),
+            each.refused or 'none' if each.place else '',
+        )
+        inputs.append(TableRow((NAMES[each.source], *cells)))
+        if ledger := each.ledger:
+            promised = NONE if ledger.promised is None else str(ledger.promised)
+            numbers = promised, str(ledger.present), str(ledger.read), str(ledger.judged)
+            counts = (TableCell(text, kind='number') for text in numbers)
+            ledgers.append(TableRow((NAMES[each.source], *counts, ledger.words)))
+    # What went well with the messages of all inputs has no column.
+    troubles = {NAMES[each.source]: each.troubles for each in seen if each.place}
+    heads = [head for head in Trouble if any(head in amounts for amounts in troubles.values())]
+    troubled = (
+        TableRow((name, *(amounts.get(head, NONE) for head in heads)))
+        for name, amounts in troubles.items()
+    )
+    columns = 'Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused'
+    counted_as = 'Input', 'Promised', 'Present', 'Read', 'Judged', 'Reasons of the differences'
     return joined(
         element('h3', 'Inputs'),
-        table(
-            ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused'),
-            (_input_row(input_seen) for input_seen in seen),
-        ),
-        *_trouble_table(seen),
+        table(columns, inputs),
+        *([table(('Input', *(head.value for head in heads)), troubled)] if heads else []),
         element('h3', 'What became of each message'),
-        table(
-            ('Input', 'Promised', 'Present', 'Read', 'Judged', 'Reasons of the differences'),
-            (
-                _ledger_row(input_seen, input_seen.ledger)
-                for input_seen in seen
-                if input_seen.ledger
-            ),
-        ),
+        table(counted_as, ledgers),
         element(
             'p', 'Only these columns of the recording were read for this page.', class_='muted'
         ),
     )
-
-
-def _input_row(seen: InputSeen) -> TableRow:
-    tag = element('span', seen.origin, class_=TAGS[seen.known])
-    rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
-    return TableRow(
-        (
-            NAMES[seen.source],
-            TableCell(tag, kind='place'),
-            TableCell(number(seen.low, 4), kind='short'),
-            TableCell(number(seen.high, 4), kind='short'),
-            TableCell(shown_unit(seen.unit), kind='short'),
-            TableCell(rate, kind='number'),
-            TableCell(seen.place, kind='place'),
-            seen.refused or 'none' if seen.place else '',
-        )
-    )
-
-
-def _ledger_row(seen: InputSeen, ledger: Ledger) -> TableRow:
-    promised = NONE if ledger.promised is None else str(ledger.promised)
-    numbers = promised, str(ledger.present), str(ledger.read), str(ledger.judged)
-    cells = (TableCell(text, kind='number') for text in numbers)
-    return TableRow((NAMES[seen.source], *cells, ledger.words))
-
-
-def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
-    """Yield what is wrong with the messages of the inputs; what went well has no column."""
-    by_input = {NAMES[each.source]: each.troubles for each in seen if each.place}
-    heads = [head for head in Trouble if any(head in amounts for amounts in by_input.values())]
-    if heads:
-        rows = (
-            TableRow((name, *(amounts.get(head, NONE) for head in heads)))
-            for name, amounts in by_input.items()
-        )
-        yield table(('Input', *(head.value for head in heads)), rows)
 
 
 def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:

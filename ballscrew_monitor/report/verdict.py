@@ -13,7 +13,7 @@ from ballscrew_monitor.health.words import normal_answer
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
-from ballscrew_monitor.report.ledger import Ledger, speed_ledger
+from ballscrew_monitor.report.ledger import speed_ledger
 from ballscrew_monitor.report.survey import REST
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
@@ -108,14 +108,12 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
     if case.health is not None:
         normal = normal_answer(case.health)
         if verdict.standing in (VerdictKind.BAD, VerdictKind.PERHAPS):
-            remedy = _with_workshop(case.health.advice, remedy)
+            # What the workshop can change by itself stands before what the process would.
+            advice = case.health.advice
+            workshop = f'{advice[:1].upper()}{advice[1:]}' if advice else ''
+            remedy = f'{workshop}; or {remedy}' if workshop and remedy else remedy
+            remedy = remedy or (f'{workshop}.' if workshop else '')
     return dataclasses.replace(verdict, remedy=remedy, contact=case.contact, normal=normal)
-
-
-def _with_workshop(advice: str, remedy: str) -> str:
-    """Return what the workshop can change by itself, before what the process would."""
-    first = f'{advice[:1].upper()}{advice[1:]}.' if advice else ''
-    return f'{first[:-1]}; or {remedy}' if first and remedy else first or remedy
 
 
 def _verdict(case: AxisCase) -> AxisVerdict:
@@ -131,11 +129,24 @@ def _verdict(case: AxisCase) -> AxisVerdict:
         return _hardly_judged(case, judged, whole)
     if not summary.events and (ledger := speed_ledger(case)):
         if ledger.unjudged_share > UNKNOWN_PART:
-            return _hardly_read(case, ledger)
+            part = percent(ledger.judged / ledger.expected)
+            reasons = {key: time for key, time in case.survey.reasons.items() if time}
+            return AxisVerdict(
+                sentence=f'of {ledger.expected} samples of the speed of axis {case.axis} '
+                f'{ledger.judged} ({part}) were judged: {ledger.words}.',
+                remedy=_remedy(_longest(reasons))
+                or 'Record it again, or find the files that are missing.',
+            )
         beyond = math.fsum(case.survey.moving.get(reason, 0.0) for reason in BEYOND)
         away = summary.outside_time + beyond > OUTSIDE_PART * summary.running_time
         if beyond and away and not _mostly_outside(summary):
-            return _hardly_optimal(case, summary)
+            part = share(summary.optimal_time, summary.running_time)
+            more = _unjudged_part(case, summary)
+            return AxisVerdict(
+                sentence=f'axis {case.axis} was in its optimal zone for {part} of its motion: it '
+                f'was outside for {duration(summary.outside_time)}{more}.',
+                remedy=_remedy(_longest(case.survey.moving)),
+            )
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
         return AxisVerdict(
@@ -197,35 +208,17 @@ def _hardly_judged(case: AxisCase, judged: float, whole: float) -> AxisVerdict:
     )
 
 
-def _hardly_read(case: AxisCase, ledger: Ledger) -> AxisVerdict:
-    """Return how many samples of the speed were judged of those that there should be."""
-    part = percent(ledger.judged / ledger.expected)
-    reasons = _longest({key: time for key, time in case.survey.reasons.items() if time})
-    return AxisVerdict(
-        sentence=f'of {ledger.expected} samples of the speed of axis {case.axis} {ledger.judged} '
-        f'({part}) were judged: {ledger.words}.',
-        remedy=_remedy(reasons) or 'Record it again, or find the files that are missing.',
-    )
-
-
-def _hardly_optimal(case: AxisCase, summary: Summary) -> AxisVerdict:
-    """Return that an axis was outside of zone or surface for most of its motion."""
-    reason = _longest(case.survey.moving)
-    return AxisVerdict(
-        sentence=f'axis {case.axis} was in its optimal zone for '
-        f'{share(summary.optimal_time, summary.running_time)} of its motion: it was outside for '
-        f'{duration(summary.outside_time)}{_unjudged_part(case, summary)}.',
-        remedy=_remedy(reason),
-    )
-
-
 def _mostly_outside(summary: Summary) -> bool:
     judged = summary.optimal_time + summary.outside_time
     return summary.outside_time > OUTSIDE_PART * judged
 
 
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
-    time = _time_outside(case, summary)
+    running = summary.running_time
+    time = ' and '.join(
+        f'{word} for {duration(time)} ({share(time, running)} of its motion)'.lstrip()
+        for word, time in parts_outside(case, summary).items()
+    )
     sure = not case.surely_outside <= ROUNDING * summary.outside_time
     standing = VerdictKind.BAD if sure else VerdictKind.PERHAPS
     if not summary.events and _mostly_outside(summary):
@@ -247,15 +240,6 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
         why=_why(summary.events),
         remedy=_advice(case),
     )
-
-
-def _time_outside(case: AxisCase, summary: Summary) -> str:
-    running = summary.running_time
-    parts = [
-        f'{word} for {duration(time)} ({share(time, running)} of its motion)'.lstrip()
-        for word, time in parts_outside(case, summary).items()
-    ]
-    return ' and '.join(parts)
 
 
 def parts_outside(case: AxisCase, summary: Summary) -> dict[str, float]:
