@@ -8,7 +8,7 @@ The words for what was lost, the summary, and the report.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 from pathlib import Path
 from typing import Any
@@ -174,7 +174,23 @@ def report(plan: Plan, outcome: Outcome) -> None:
         return
     recorded = Bag(outcome.recording)
     for axis in plan.axes:
-        print('\n'.join(_axis_lines(outcome, axis, recorded)))
+        kinds = {
+            output(axis.name, 'state'): BallScrewState,
+            output(axis.name, 'out_of_zone'): OutOfZone,
+        }
+        summary = summary_of(
+            deserialize_message(message.data, kinds[message.topic])
+            for message in recorded.messages(kinds)
+        )
+        surface = axis.surface
+        print(
+            f'\naxis {axis.name}: screw {surface.screw_name}, oil {surface.oil_name}, '
+            f'{surface.tier.replace("_", "-")} model',
+            f'samples     {_sent(outcome, axis)} sent, {outcome.judged(axis.name)} judged, '
+            f'{summary.states if summary else 0} states recorded',
+            *(summary.lines() if summary else ()),
+            sep='\n',
+        )
     # Imported here: it takes longer than everything else of the program.
     from ballscrew_monitor.report.log_report import report_log
 
@@ -190,24 +206,6 @@ def report(plan: Plan, outcome: Outcome) -> None:
         f'messages sent at most {1e3 * outcome.lateness:.0f} ms late\n'
         f'files       {outcome.recording} ({size:.1f} MB), {files}'
     )
-
-
-def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
-    kinds = {
-        output(axis.name, 'state'): BallScrewState,
-        output(axis.name, 'out_of_zone'): OutOfZone,
-    }
-    messages = recorded.messages(kinds)
-    summary = summary_of(deserialize_message(item.data, kinds[item.topic]) for item in messages)
-    yield (
-        f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
-        f'{axis.surface.tier.replace("_", "-")} model'
-    )
-    yield (
-        f'samples     {_sent(outcome, axis)} sent, {outcome.judged(axis.name)} judged, '
-        f'{summary.states if summary else 0} states recorded'
-    )
-    yield from [] if summary is None else summary.lines()
 
 
 def _sent(outcome: Outcome, axis: Axis) -> int:

@@ -15,6 +15,7 @@ from surrogate.units import RPM
 REGIME_WORDS = {int(regime): regime.word for regime in REGIMES}
 ZONES = {BallScrewState.ZONE_OPTIMAL: 'optimal', BallScrewState.ZONE_OUTSIDE: 'outside'}
 GATES = {BallScrewState.GATE_STANDSTILL: 'standstill', BallScrewState.GATE_LIGHT_LOAD: 'light'}
+LEVELS = {BallScrewState.LEVEL_UNKNOWN: 'level unknown', BallScrewState.LEVEL_OK: 'ok'}
 CAUSES = {
     Finding.CODE_RCS_HIGH: 'RCS high',
     Finding.CODE_EFFICIENCY_LOW: 'efficiency low',
@@ -34,6 +35,8 @@ def state_cells(state: BallScrewState) -> list[str]:
     standstill = BallScrewState.GATE_STANDSTILL in state.active_gates
     light = BallScrewState.GATE_LIGHT_LOAD in state.active_gates
     efficiency = math.nan if light or standstill else 100.0 * result.efficiency
+    causes = [CAUSES[finding.code] for finding in state.findings if finding.code in CAUSES]
+    warning = f'WARNING {state.event_id}: {" and ".join(causes) or "held"}'
     return [
         f'{_number(point.speed / RPM, 5, 0)} rev/min',
         f'{_number(point.axial_load, 5, 0)} N',
@@ -43,7 +46,7 @@ def state_cells(state: BallScrewState) -> list[str]:
         f'Lambda {_number(math.nan if standstill else result.film_ratio, 4, 2)}',
         f'RCS {_number(math.nan if standstill else result.rcs, 6, 4)}',
         f'{_zone(state):15}',
-        _warning(state),
+        LEVELS.get(state.level, warning),
     ]
 
 
@@ -106,15 +109,6 @@ def _zone(state: BallScrewState) -> str:
     if 'standstill' in gates:
         return 'standstill'
     return f'{zone} ({gates[0]})' if gates else zone
-
-
-def _warning(state: BallScrewState) -> str:
-    if state.level == BallScrewState.LEVEL_UNKNOWN:
-        return 'level unknown'
-    if state.level == BallScrewState.LEVEL_OK:
-        return 'ok'
-    causes = [CAUSES[finding.code] for finding in state.findings if finding.code in CAUSES]
-    return f'WARNING {state.event_id}: {" and ".join(causes) or "held"}'
 
 
 def _number(value: float, width: int, decimals: int) -> str:
