@@ -204,17 +204,16 @@ def _read_table(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], 
 
 
 def _solve(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.clients.solve import ask, Question
+    from ballscrew_monitor.clients.solve import ask, goal_of
 
-    question = Question(
-        axis=args.axis,
+    goal = goal_of(
+        args.axis,
         speed=math.nan if args.speed_rpm is None else args.speed_rpm * RPM,
         load=math.nan if args.load is None else args.load,
         temperature=math.nan if args.temperature is None else args.temperature,
         timeout=args.timeout,
-        node=args.node,
     )
-    return ask(question, wait=args.wait, as_json=args.json)
+    return ask(goal, args.node, wait=args.wait, as_json=args.json)
 
 
 def _doctor(args: argparse.Namespace) -> int:

@@ -234,12 +234,26 @@ class Examination:
 
     def listen(self, seconds: float) -> list[InputFacts]:
         """Return the facts of every input after listening to those that can be."""
-        hearings = {wanted: self._hearing(*wanted) for wanted in self._wanted}
+        hearings: dict[tuple[str, Source], Hearing] = {}
+        for axis, source in self._wanted:
+            link, type_name, opened = self._look(axis, source)
+            if not isinstance(opened, Input) or type_name not in types_of(link):
+                continue
+            hearing = hearings[axis, source] = Hearing(
+                opened,
+                self._node.get_clock(),
+                timeout=nanoseconds(self._value(axis, source, 'timeout')),
+                max_future=nanoseconds(self._values[f'{axis}.max_future']),
+                max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
+                position=self._position(axis, source, type_name, opened.scaling),
+            )
+            self._node.create_subscription(
+                opened.message_type, link.topic, hearing.take, qos.input_qos()
+            )
         # The way to a publisher takes its time on a busy machine; none of it is silence.
-        listening = [hearing for hearing in hearings.values() if hearing is not None]
-        self._spin(lambda: all(hearing.messages for hearing in listening), DISCOVERY)
+        self._spin(lambda: all(hearing.messages for hearing in hearings.values()), DISCOVERY)
         self._spin(lambda: False, seconds)
-        return [self._facts(*wanted, hearings[wanted]) for wanted in self._wanted]
+        return [self._facts(*wanted, hearings.get(wanted)) for wanted in self._wanted]
 
     def _look(self, axis: str, source: Source) -> tuple[Link, str, Input | str | None]:
         """
@@ -267,23 +281,6 @@ class Examination:
             return link, type_name, opened.close(type_name)
         except InputError as error:
             return link, type_name, str(error)
-
-    def _hearing(self, axis: str, source: Source) -> Hearing | None:
-        link, type_name, opened = self._look(axis, source)
-        if not isinstance(opened, Input) or type_name not in types_of(link):
-            return None
-        hearing = Hearing(
-            opened,
-            self._node.get_clock(),
-            timeout=nanoseconds(self._value(axis, source, 'timeout')),
-            max_future=nanoseconds(self._values[f'{axis}.max_future']),
-            max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
-            position=self._position(axis, source, type_name, opened.scaling),
-        )
-        self._node.create_subscription(
-            opened.message_type, link.topic, hearing.take, qos.input_qos()
-        )
-        return hearing
 
     def _position(
         self, axis: str, source: Source, type_name: str, scaling: Scaling

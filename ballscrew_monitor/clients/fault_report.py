@@ -122,25 +122,17 @@ def is_state(path: Path) -> bool:
 
 def own_failures() -> list[str]:
     """Return the last failures of commands that this user has run, the newest first."""
-    files = filter(None, map(_own_failure, Path(tempfile.gettempdir()).glob(FAILURES)))
-    return [text for _, text in sorted(files, reverse=True)[:MOST_FAILURES]]
-
-
-def _own_failure(path: Path) -> tuple[float, str] | None:
-    """Return when a file of this user was written [s] and its text; None for any other, a link."""
-    try:
-        with open(path, 'rb', opener=_open_no_link) as stream:
+    no_link, failures = os.O_NOFOLLOW | os.O_NONBLOCK, []
+    for path in Path(tempfile.gettempdir()).glob(FAILURES):
+        with (
+            contextlib.suppress(OSError),  # it is another user's
+            open(path, 'rb', opener=lambda name, flags: os.open(name, flags | no_link)) as stream,
+        ):
             about = os.fstat(stream.fileno())
             is_file = stat.S_ISREG(about.st_mode) and about.st_nlink == 1
             if is_file and about.st_uid == os.getuid():
-                return about.st_mtime, _end_of(stream)
-    except OSError:
-        pass  # it is another user's
-    return None
-
-
-def _open_no_link(path: str, flags: int) -> int:
-    return os.open(path, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
+                failures.append((about.st_mtime, _end_of(stream)))
+    return [text for _, text in sorted(failures, reverse=True)[:MOST_FAILURES]]
 
 
 def versions() -> dict[str, Any]:
@@ -217,7 +209,17 @@ class _Parts:
     def add_bag(self, path: Path) -> None:
         """Add the end of a bag, and the parameters that it holds."""
         bag, size, kept = Bag(path, salvage=True), 0, deque[Message]()
-        for message in bag.messages(self._topics_of(bag)):
+        topics = []  # those in which secrets can be hidden
+        for topic, kind in bag.types.items():
+            try:
+                why = 'holds bytes, in which nothing can be hidden' if holds_bytes(kind) else ''
+            except InputError:
+                why = 'is not installed here'
+            if why:
+                self._remarks.append(f'{topic} is left out: its type {kind} {why}')
+            else:
+                topics.append(topic)
+        for message in bag.messages(topics):
             kept.append(message)
             size += len(message.data)
             first = message.log_time - self._case.seconds * 1e9
@@ -235,20 +237,6 @@ class _Parts:
         if parameters:
             self.add_text('parameters.json', json_text(parameters))
 
-    def _topics_of(self, bag: Bag) -> list[str]:
-        """Return the topics of a bag in which secrets can be hidden; remark on all others."""
-        topics = []
-        for topic, kind in bag.types.items():
-            try:
-                why = 'holds bytes, in which nothing can be hidden' if holds_bytes(kind) else ''
-            except InputError:
-                why = 'is not installed here'
-            if why:
-                self._remarks.append(f'{topic} is left out: its type {kind} {why}')
-            else:
-                topics.append(topic)
-        return topics
-
     def _learn_from(self, type_name: str, data: bytes) -> dict[str, Any]:
         """Learn who is named in a message; return the parameters that it holds."""
         values: dict[str, Any] = {}
@@ -260,45 +248,42 @@ class _Parts:
                 self._mask.learn_reasons([memory.get('shelve_reason', ''), reason])
                 values |= taken.get('values', {})
         elif kind := NAMING.get(type_name):
-            self._learn_from_message(deserialize_message(data, kind))
-        return values
-
-    def _learn_from_message(self, message: Any) -> None:
-        if isinstance(message, DiagnosticArray):
-            pairs = [pair for status in message.status for pair in status.values]
+            message: Any = deserialize_message(data, kind)
+            self._mask.learn(Secret.NAME, [getattr(message, 'acknowledged_by', '')])
+            self._mask.learn_reasons(getattr(message, name, '') for name in REASONS)
+            statuses = message.status if isinstance(message, DiagnosticArray) else ()
+            pairs = [pair for status in statuses for pair in status.values]
             for host in (pair.value for pair in pairs if pair.key == HOST_KEY):
                 self._mask.learn(Secret.HOST, with_short(host.partition(' (process ')[0]))
-            return
-        self._mask.learn(Secret.NAME, [getattr(message, 'acknowledged_by', '')])
-        self._mask.learn_reasons(getattr(message, name, '') for name in REASONS)
+        return values
 
     def add_table(self, path: Path) -> None:
         """Add a table: its first lines and its end."""
-        head, end = self._ends_of(path)
-        name = f'log_{path.name}'
-        if b'\0' not in head or head[:2] in WIDE:
-            self._texts.append((name, _text_of_table(head, end)))
-        elif self._case.tables and not end:
-            self._files.append((name, head))
-        elif self._case.tables:
-            size = path.stat().st_size
-            raise InputError(f'{path} has {size} bytes, allowed are {self._room:.0f}')
-        else:
-            raise InputError(BINARY.format(name=path))
-
-    def _ends_of(self, path: Path) -> tuple[bytes, bytes]:
-        """Return a file in whole, with nothing after it, or what it begins and ends with."""
+        end = b''
         try:
             with path.open('rb') as stream:
                 size = stream.seek(0, os.SEEK_END)
                 stream.seek(0)
-                if size <= self._room:
-                    return stream.read(), b''
-                head = stream.read(HEAD)
-                stream.seek((size - int(self._room)) // 2 * 2)  # a letter of two bytes stays whole
-                return head, stream.read()
+                head = stream.read(HEAD if size > self._room else -1)
+                if size > self._room:
+                    stream.seek((size - int(self._room)) // 2 * 2)  # a wide letter stays whole
+                    end = stream.read()
         except OSError as error:
             raise InputError(f'log {path} cannot be read: {error.strerror}') from None
+        name = f'log_{path.name}'
+        wide = WIDE.get(head[:2])
+        if b'\0' not in head or wide:
+            coding = (wide, 'replace') if wide else ('utf-8', 'surrogateescape')
+            first, last = (part.decode(*coding) for part in (head, end))
+            if end:  # both in whole lines
+                first, last = first.rpartition('\n')[0] + '\n', last.partition('\n')[2]
+            self._texts.append((name, (first + last).removeprefix('\ufeff')))
+        elif self._case.tables and not end:
+            self._files.append((name, head))
+        elif self._case.tables:
+            raise InputError(f'{path} has {size} bytes, allowed are {self._room:.0f}')
+        else:
+            raise InputError(BINARY.format(name=path))
 
     def packed(self) -> tuple[bytes, list[str]]:
         """Return the zip, and what it holds in lines."""
@@ -347,7 +332,8 @@ class _Parts:
                 writer.write(topics[message.topic], data, **times)
             writer.close()
             self._remarks += bag.notes
-            return [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
+            files = sorted(file for file in Path(folder).iterdir() if file.is_file())
+            return [(f'{name}/{file.name}', file.read_bytes()) for file in files]
 
     def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:
         hidden = self._mask.count
@@ -368,20 +354,6 @@ NAMING = {
 }
 """Messages that name persons or machines."""
 REASONS = ('acknowledge_reason', 'shelve_reason', 'baseline_reason')
-
-
-def _text_of_table(head: bytes, end: bytes) -> str:
-    """Return a table by its first bytes and its last ones, both in whole lines."""
-    wide = WIDE.get(head[:2])
-    coding = (wide, 'replace') if wide else ('utf-8', 'surrogateescape')
-    first, last = (part.decode(*coding) for part in (head, end))
-    if end:
-        first, last = first.rpartition('\n')[0] + '\n', last.partition('\n')[2]
-    return (first + last).removeprefix('\ufeff')
-
-
-def _files_in(folder: str) -> list[Path]:
-    return sorted(path for path in Path(folder).iterdir() if path.is_file())
 
 
 def _end_of(stream: BinaryIO) -> str:

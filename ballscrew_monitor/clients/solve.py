@@ -9,7 +9,6 @@ The node wants the machine frame, in which the force on the nut counts.
 """
 
 from collections.abc import Callable, Sequence
-import dataclasses
 import math
 import re
 import signal
@@ -60,60 +59,60 @@ FACTS = (
 """Fields of a result that are printed as they are."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Question:
+def goal_of(
+    axis: str,
+    *,
+    speed: float = math.nan,
+    load: float = math.nan,
+    temperature: float = math.nan,
+    timeout: float = 0.0,
+) -> Any:
     """
-    What is to be solved.
+    Return the goal of a solve in the machine frame; raises InputError for half a point.
 
     Speed [rad/s] and load [N] as `ballscrew point` has them, both NaN for the current point;
-    temperature [degC], NaN for that of the axis; timeout [s], 0 for the default; full name of the
-    node, empty for the only one there is.
+    temperature [degC], NaN for that of the axis; timeout [s], 0 for the default.
 
     """
-
-    axis: str
-    speed: float = math.nan
-    load: float = math.nan
-    temperature: float = math.nan
-    timeout: float = 0.0
-    node: str = ''
-
-    def __post_init__(self) -> None:
-        """Refuse half a point."""
-        if math.isnan(self.speed) is not math.isnan(self.load):
-            raise InputError(
-                'speed and load belong together: give both, or none of them for the current point'
-            )
-
-
-def goal_of(question: Question) -> Any:
-    """Return the goal in the machine frame."""
+    if math.isnan(speed) is not math.isnan(load):
+        raise InputError(
+            'speed and load belong together: give both, or none of them for the current point'
+        )
     goal = SolveOperatingPoint.Goal(
-        axis=question.axis, use_current=math.isnan(question.speed), timeout=float(question.timeout)
+        axis=axis, use_current=math.isnan(speed), timeout=float(timeout)
     )
     # The load of the command opposes the motion when it has the sign of the speed.
-    opposing = math.copysign(1.0, question.speed) * question.load
+    opposing = math.copysign(1.0, speed) * load
     goal.point = OperatingPoint(
-        speed=float(question.speed),
-        axial_load=float(opposing_load(opposing, direction_of(question.speed))),
-        temperature=float(question.temperature),
+        speed=float(speed),
+        axial_load=float(opposing_load(opposing, direction_of(speed))),
+        temperature=float(temperature),
     )
     return goal
 
 
-def ask(question: Question, *, wait: float, as_json: bool) -> int:
-    """Ask the node, print what comes of it, and return the exit code."""
+def ask(goal: Any, node_name: str = '', *, wait: float, as_json: bool) -> int:
+    """
+    Ask the node, print what comes of it, and return the exit code.
+
+    `node_name` is its full name, empty for the only one there is.
+
+    """
     with interrupts(threading.Event()) as interrupted:
         with started_node('ballscrew_solve') as node:
-            code = _Conversation(node, question, interrupted).run(wait, as_json=as_json)
+            talk = _Conversation(node, goal, interrupted, node_name)
+            code = talk.run(wait, as_json=as_json)
         return SIGNALLED + interrupted[0] if interrupted else code
 
 
 class _Conversation:
     """One goal, from finding the node to its result."""
 
-    def __init__(self, node: Node, question: Question, interrupted: Sequence[int]) -> None:
-        self._node, self._question, self._interrupted = node, question, interrupted
+    def __init__(
+        self, node: Node, goal: Any, interrupted: Sequence[int], node_name: str = ''
+    ) -> None:
+        self._node, self._goal, self._interrupted = node, goal, interrupted
+        self._node_name = node_name
 
     def _until(self, condition: Callable[[], Any], seconds: float = math.inf) -> Any:
         return spun(self._node, condition, seconds, self._interrupted)
@@ -128,7 +127,7 @@ class _Conversation:
         silence = f'{action} does not answer within {wait:g} s'
         if not self._until(client.server_is_ready, wait):
             return self._give_up(silence)
-        sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
+        sent = client.send_goal_async(self._goal, feedback_callback=_show)
         handle = self._until(lambda: sent.done() and sent.result(), wait)
         if handle is None:
             self._take_back_late(sent)
@@ -145,7 +144,7 @@ class _Conversation:
             return INTERRUPTED
         if not answer.done():
             return _complain(f'{action} is gone, its node has ended')
-        return _print(self._question.axis, answer.result().result, as_json=as_json)
+        return _print(self._goal.axis, answer.result().result, as_json=as_json)
 
     def _hear_refusals(self) -> list[str]:
         """Return the list to which the node's log adds why it refuses a solve from now on."""
@@ -165,7 +164,7 @@ class _Conversation:
 
     def _find(self, wait: float) -> str | None:
         """Return the name of the action; raises InputError when several nodes offer it."""
-        wanted = f'{self._question.node.rstrip("/")}/solve' if self._question.node else ''
+        wanted = f'{self._node_name.rstrip("/")}/solve' if self._node_name else ''
 
         def offered() -> list[str]:
             return [

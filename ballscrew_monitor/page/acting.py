@@ -15,7 +15,7 @@ import math
 from typing import Any
 
 from action_msgs.msg import GoalStatus
-from ballscrew_monitor.clients.solve import goal_of, Question
+from ballscrew_monitor.clients.solve import goal_of
 from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page import maps
@@ -107,12 +107,9 @@ class Acting:
         view = self._hub.view(text_in(request, 'axis'))
         if len(self._solves) >= MOST_SOLVES:
             raise Refused(phrase('solves_many', count=str(MOST_SOLVES)))
-        question = Question(
-            axis=view.axis,
-            speed=number_in(request, 'speed_rpm') * RPM,
-            load=number_in(request, 'load_N'),
-            temperature=number_in(request, 'temperature_degC', math.nan),
-        )
+        speed, load = number_in(request, 'speed_rpm') * RPM, number_in(request, 'load_N')
+        temperature = number_in(request, 'temperature_degC', math.nan)
+        goal = goal_of(view.axis, speed=speed, load=load, temperature=temperature)
         key = browser, request['id']
         if key in self._solves:
             raise InputError(f'a solve with the id {request["id"]} is under way')
@@ -120,15 +117,27 @@ class Acting:
         action = f'{view.node}/solve'
         client = await self._in_ros(ActionClient, self._node, SolveOperatingPoint, action)
         try:
-            result = await self._solved(client, question, key)
+            result = await self._solved(client, goal, key)
         finally:
             del self._solves[key]
             await self._in_ros(client.destroy)
         if not result.success:
             raise InputError(result.status)
-        return _solve_record(question, result, view), {}
+        full, limits = result.full, maps.limits_of(view.limits)
+        zone, _ = maps.judged(full.rcs, full.efficiency, load, limits)
+        return {  # as that of `read`, and what the solve did to the surface
+            'speed_rpm': speed / RPM,
+            'load_N': load,
+            'temperature_degC': temperature,
+            'efficiency': full.efficiency,
+            'rcs': full.rcs,
+            'film_ratio': full.film_ratio,
+            'torque_N_m': full.driving_torque,
+            'zone': zone,
+            'words': free('; '.join(filter(None, (result.status, result.correction)))),
+        }, {}
 
-    async def _solved(self, client: Any, question: Question, key: tuple[Browser, Any]) -> Any:
+    async def _solved(self, client: Any, goal: Any, key: tuple[Browser, Any]) -> Any:
         """Return the result of a goal; a browser that leaves takes it back."""
         await self._until(client.server_is_ready, PATIENCE, 'solve_none')
         post = asyncio.get_running_loop().call_soon_threadsafe
@@ -139,7 +148,7 @@ class Acting:
             record = {'id': number, 'share': step.fraction, 'words': step.stage}
             post(browser.reply, frame('progress', record))
 
-        sent = await self._in_ros(client.send_goal_async, goal_of(question), show_progress)
+        sent = await self._in_ros(client.send_goal_async, goal, show_progress)
         await self._until(sent.done, PATIENCE, 'solve_silent')
         handle = sent.result()
         if not handle.accepted:
@@ -198,20 +207,3 @@ async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
             return False
         await asyncio.sleep(POLL)
     return True
-
-
-def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, Any]:
-    """Return a result as that of `read`, and what it did to the surface."""
-    full = result.full
-    zone, _ = maps.judged(full.rcs, full.efficiency, question.load, maps.limits_of(view.limits))
-    return {
-        'speed_rpm': question.speed / RPM,
-        'load_N': question.load,
-        'temperature_degC': question.temperature,
-        'efficiency': full.efficiency,
-        'rcs': full.rcs,
-        'film_ratio': full.film_ratio,
-        'torque_N_m': full.driving_torque,
-        'zone': zone,
-        'words': free('; '.join(filter(None, (result.status, result.correction)))),
-    }

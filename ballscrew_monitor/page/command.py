@@ -45,15 +45,27 @@ def page_command(args: argparse.Namespace, nominal: Path) -> int:
 
     """
     options = _checked(args)
-    with interrupts(threading.Event()) as stopped, bound_socket(options) as bound:
+    with (
+        interrupts(threading.Event()) as stopped,
+        bound_socket(options) as bound,
+        contextlib.ExitStack() as stack,
+    ):
         options = dataclasses.replace(options, port=bound.getsockname()[1])
-        with contextlib.ExitStack() as stack:
-            if args.log:
-                begin = _begin_log(args, nominal)
-            else:
-                node = stack.enter_context(started_node('ballscrew_page'))
-                begin = lambda hub: LiveSource(node, hub, options)  # noqa: E731
-            asyncio.run(_serve(options, bound, begin, lambda: bool(stopped), args.log))
+        begin: Begin
+        if args.log:
+            bag = opened_log(args.log, mapping=args.map)
+            parameters = parameters_for(bag, args.params, nominal)
+            say(f'parameters: {parameters.origin}', *parameters.sentences)
+            with shown_progress(bag.duration) as on_done:
+                axes = recorded_axes(bag, parameters, on_done)
+            for axis in axes:
+                axis.view.hear_parameters(parameters.values)
+            say(*parameters.notes, *bag.notes)
+            begin = lambda hub: Recording(hub, axes)  # noqa: E731
+        else:
+            node = stack.enter_context(started_node('ballscrew_page'))
+            begin = lambda hub: LiveSource(node, hub, options)  # noqa: E731
+        asyncio.run(_serve(options, bound, begin, lambda: bool(stopped), args.log))
     return DONE
 
 
@@ -70,19 +82,6 @@ class Source(Protocol):
 
 Begin = Callable[[Hub], Source]
 """Makes the source of a hub, in the thread of the server."""
-
-
-def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
-    """Judge the recording; return what plays it."""
-    bag = opened_log(args.log, mapping=args.map)
-    parameters = parameters_for(bag, args.params, nominal)
-    say(f'parameters: {parameters.origin}', *parameters.sentences)
-    with shown_progress(bag.duration) as on_done:
-        axes = recorded_axes(bag, parameters, on_done)
-    for axis in axes:
-        axis.view.hear_parameters(parameters.values)
-    say(*parameters.notes, *bag.notes)
-    return lambda hub: Recording(hub, axes)
 
 
 class LiveSource:

@@ -15,6 +15,8 @@ from prometheus_client.registry import Collector
 from starlette.responses import Response
 
 LABELS = ('node', 'axis')
+GOOD = ('ok', 'derived')
+"""States of an input that can be judged with."""
 LEVELS = {'unknown': 0.0, 'ok': 1.0, 'warn': 2.0}
 Values = Iterable[tuple[tuple[str, ...], float]]
 """Values of labels beyond those of the axis, and a number."""
@@ -51,16 +53,11 @@ def _outside_share(view: AxisView) -> Values:
 def _inputs(name: str) -> Callable[[AxisView], Values]:
     def of_inputs(view: AxisView) -> Values:
         for each in view.state.get('inputs', ()):
-            if each['state'] != 'not_configured' and each[name] is not None:
-                yield (each['name'],), float(each[name])
+            value = each['state'] in GOOD if name == 'state' else each[name]
+            if each['state'] != 'not_configured' and value is not None:
+                yield (each['name'],), float(value)
 
     return of_inputs
-
-
-def _input_ok(view: AxisView) -> Values:
-    for each in view.state.get('inputs', ()):
-        if each['state'] != 'not_configured':
-            yield (each['name'],), float(each['state'] in ('ok', 'derived'))
 
 
 def _health(view: AxisView) -> Values:
@@ -78,7 +75,7 @@ GAUGES: dict[str, tuple[str, tuple[str, ...], Callable[[AxisView], Values]]] = {
     'efficiency_ratio': ('Efficiency where it is judged', LABELS, _column('efficiency')),
     'rcs_ratio': ('Load carried where metal pierces the film', LABELS, _column('rcs')),
     'film_ratio': ('Film over roughness', LABELS, _column('film_ratio')),
-    'input_ok': ('1 while an input can be judged with', INPUT, _input_ok),
+    'input_ok': ('1 while an input can be judged with', INPUT, _inputs('state')),
     'input_age_seconds': ('Age of the last sample of an input', INPUT, _inputs('age_s')),
     'health': ('A quantity of health, such as preload or life used', QUANTITY, _health),
 }

@@ -4,7 +4,6 @@
 
 import asyncio
 from collections.abc import Iterable, Mapping
-import dataclasses
 import math
 from typing import Any
 
@@ -36,40 +35,11 @@ from surrogate.files import InputError
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
+Codes = NDArray[np.uint8]
 RATES = (0.1, 100.0)
 CLOCK_PERIOD = 0.5  # [s] between two frames of the clock
 CODES = ('zone', 'reason')
 QUANTITIES = {'RCS': 'rcs', 'efficiency': 'efficiency'}
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Course:
-    """Rows of an axis as those of a history, and their codes of zone and reason."""
-
-    rows: Array
-    codes: NDArray[np.uint8]
-
-    def until(self, stamp: float) -> int:
-        """Return how many rows are not after a stamp [s]."""
-        return int(np.searchsorted(self.rows[:, 0], stamp, side='right'))
-
-
-def _rows_of(judged: NDArray[Any]) -> Array:
-    still = judged['gates'] & STANDSTILL != 0
-    light = still | (judged['gates'] & LIGHT_LOAD != 0)
-    measured = judged['motor_torque_source'] == PointSource.MEASURED
-    columns = (
-        judged['stamp'] / SECOND,
-        _fresh(judged, 'speed') / RPM,
-        _fresh(judged, 'axial_load'),
-        _fresh(judged, 'temperature') + celsius(0.0),
-        np.where(light, np.nan, judged['efficiency']),
-        *(np.where(still, np.nan, judged[name]) for name in ('rcs', 'film_ratio')),
-        np.where(still, np.nan, judged['machine_torque']),
-        np.where(measured, judged['motor_torque'], np.nan),
-        judged['level'],
-    )
-    return np.column_stack(columns)
 
 
 def _fresh(judged: NDArray[Any], name: str) -> Array:
@@ -80,8 +50,9 @@ def _fresh(judged: NDArray[Any], name: str) -> Array:
 class RecordedAxis:
     """One axis of a recording and its view."""
 
-    def __init__(self, log: str, case: AxisCase, course: Course) -> None:
-        self.course, self._case = course, case
+    def __init__(self, log: str, case: AxisCase, rows: Array, codes: Codes) -> None:
+        """Show the rows of an axis as those of a history, and their codes of zone and reason."""
+        self.rows, self._codes, self._case = rows, codes, case
         self.view = AxisView(log, case.axis)
         self._at = 0
         surface, limits = case.surface, case.settings.limits
@@ -102,28 +73,32 @@ class RecordedAxis:
             'standstill_rpm': limits.standstill_speed / RPM,
         }
 
+    def _until(self, stamp: float) -> int:
+        """Return how many rows are not after a stamp [s]."""
+        return int(np.searchsorted(self.rows[:, 0], stamp, side='right'))
+
     def show(self, stamp: float, now: float) -> None:
         """Show what was until a stamp [s], at `now` [s] of a steady clock."""
-        end = self.course.until(stamp)
+        end = self._until(stamp)
         begin = self._at
-        is_far = end > begin and stamp - self.course.rows[max(begin - 1, 0), 0] > SPAN
+        is_far = end > begin and stamp - self.rows[max(begin - 1, 0), 0] > SPAN
         if end < begin or is_far:
-            begin = self.course.until(stamp - SPAN)
+            begin = self._until(stamp - SPAN)
             self.view.begin_again()
         self._at = end
         last = max(begin, end - 1)
-        for row in self.course.rows[begin:last]:
+        for row in self.rows[begin:last]:
             self.view.history.take(row)
         if end > begin:
-            record = self._state_record(self.course.rows[end - 1], self.course.codes[end - 1])
-            self.view.hear(self.course.rows[end - 1].tolist(), record, self._limits, now)
+            record = self._state_record(self.rows[end - 1], self._codes[end - 1])
+            self.view.hear(self.rows[end - 1].tolist(), record, self._limits, now)
         self.view.show_events(
             _event_record(event, stamp)
             for event in self._case.outcome.events
             if seconds(event.start) <= stamp
         )
 
-    def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
+    def _state_record(self, row: Array, codes: Codes) -> dict[str, Any]:
         zone, reason = codes.tolist()
         _, speed, load, warmth, efficiency, rcs, *_, level = row.tolist()
         if zone == Zone.OUTSIDE:
@@ -169,7 +144,7 @@ class Recording:
 
     def __init__(self, hub: Hub, axes: Iterable[RecordedAxis]) -> None:
         self._hub, self._axes = hub, list(axes)
-        stamps = [axis.course.rows[[0, -1], 0] for axis in self._axes]
+        stamps = [axis.rows[[0, -1], 0] for axis in self._axes]
         firsts, lasts = zip(*stamps, strict=True)
         self._first, self._last = float(min(firsts)), float(max(lasts))
         self._at, self._factor, self._plays = 0.0, 1.0, True
@@ -247,30 +222,46 @@ class CourseKeeper:
     """Keeps of the rows of a recording what its courses are made of."""
 
     def __init__(self) -> None:
-        self._parts: dict[str, list[tuple[Array, NDArray[np.uint8]]]] = {}
+        self._parts: dict[str, list[tuple[Array, Codes]]] = {}
 
     def add(self, axis: str, rows: NDArray[Any]) -> None:
         """Take rows: those of which the node publishes a state are kept."""
         published = rows[rows['published']]
+        still = published['gates'] & STANDSTILL != 0
+        light = still | (published['gates'] & LIGHT_LOAD != 0)
+        measured = published['motor_torque_source'] == PointSource.MEASURED
+        columns = (
+            published['stamp'] / SECOND,
+            _fresh(published, 'speed') / RPM,
+            _fresh(published, 'axial_load'),
+            _fresh(published, 'temperature') + celsius(0.0),
+            np.where(light, np.nan, published['efficiency']),
+            *(np.where(still, np.nan, published[name]) for name in ('rcs', 'film_ratio')),
+            np.where(still, np.nan, published['machine_torque']),
+            np.where(measured, published['motor_torque'], np.nan),
+            published['level'],
+        )
         codes = np.column_stack([published[name] for name in CODES]).astype(np.uint8)
-        self._parts.setdefault(axis, []).append((_rows_of(published), codes))
+        self._parts.setdefault(axis, []).append((np.column_stack(columns), codes))
 
     def table(self, axis: str) -> None:
         """Return none: no report is made."""
 
-    def course(self, axis: str) -> Course:
-        """Return the rows of an axis in the order of their stamps."""
+    def course(self, axis: str) -> tuple[Array, Codes]:
+        """Return rows and codes of an axis in the order of their stamps."""
         rows, codes = (np.concatenate(each) for each in zip(*self._parts[axis], strict=True))
         order = np.argsort(rows[:, 0], kind='stable')
-        return Course(rows=rows[order], codes=codes[order])
+        return rows[order], codes[order]
 
 
 def recorded_axes(bag: Bag, parameters: LogParameters, on_share: OnShare) -> list[RecordedAxis]:
     """Judge a recording and return its axes; raises InputError where none has a row."""
     keeper = CourseKeeper()
     log = judge_log(bag, parameters, on_share=on_share, rows=keeper)
-    courses = [(case, keeper.course(case.axis)) for case in log.axes]
-    axes = [RecordedAxis(log.name, case, course) for case, course in courses if len(course.rows)]
+    courses = [(case, *keeper.course(case.axis)) for case in log.axes]
+    axes = [
+        RecordedAxis(log.name, case, rows, codes) for case, rows, codes in courses if len(rows)
+    ]
     if not axes:
         raise InputError(f'{bag.path}: nothing was judged on any axis, there is nothing to show')
     return axes

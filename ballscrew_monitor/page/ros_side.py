@@ -187,7 +187,7 @@ class RosSide:
             if self._twins.pop(node, None):
                 self._later(self._hub.notice, f'{node} ', '')
             return
-        hosts = tuple(sorted({one.value for one in status.values if one.key == HOST}))
+        hosts = tuple(sorted({pair.value for pair in status.values if pair.key == HOST}))
         if self._twins.get(node) != hosts and len(self._twins) < MOST_AXES:
             self._twins[node] = hosts
             words = phrase('two_nodes', node=node, hosts=', '.join(hosts)[:LONGEST])
@@ -235,9 +235,17 @@ class AxisLink:
         self._is_due = False  # to ask for the parameters
         kinds = {
             'state': (BallScrewState, self._on_state, None),
-            'out_of_zone': (OutOfZone, self._on_event, LATE_QOS),
+            'out_of_zone': (
+                OutOfZone,
+                lambda event: post(view.hear_event, records.event_record(event)),
+                LATE_QOS,
+            ),
             'surface_info': (SurfaceInfo, self._on_info, LATE_QOS),
-            'health': (AxisHealth, self._on_health, LATE_QOS),
+            'health': (
+                AxisHealth,
+                lambda health: post(view.hear_health, records.health_record(health)),
+                LATE_QOS,
+            ),
         }
         self._topics = [
             (open_topic(node, f'{view.name}/{name}', kind, Apart(), qos=qos), hear)
@@ -290,36 +298,28 @@ class AxisLink:
         if not self._is_due or info is not self._info:
             return
         answer = future.result()
-        if answer is not None and len(answer.values) == len(names):
-            path, unit = values = [*map(parameter_value_to_python, answer.values)]
-            known = dict(zip(names, values, strict=True))
-            self._post(self.view.hear_parameters, known)
-            about = records.surface_record(info, unit)
-            self._surface.tell(about, info, path)
-            self._is_due = False
-            others = sorted(defaults([self.view.axis]).keys() - {*names})
-            tell = functools.partial(self._tell_others, info, known, others)
-            self._parameters.call(GetParameters.Request(names=others), tell)
+        if answer is None or len(answer.values) != len(names):
+            return
+        path, unit = values = [*map(parameter_value_to_python, answer.values)]
+        known = dict(zip(names, values, strict=True))
+        self._post(self.view.hear_parameters, known)
+        self._surface.tell(records.surface_record(info, unit), info, path)
+        self._is_due = False
+        others = sorted(defaults([self.view.axis]).keys() - {*names})
 
-    def _tell_others(
-        self, info: SurfaceInfo, known: dict[str, Any], names: list[str], future: Future
-    ) -> None:
-        """Take all other parameters; a node of another version may not have all, and says none."""
-        answer = future.result()
-        if info is self._info and answer is not None and len(answer.values) == len(names):
-            values = map(parameter_value_to_python, answer.values)
-            self._post(self.view.hear_parameters, known | dict(zip(names, values, strict=True)))
+        def tell_others(future: Future) -> None:
+            """Take them; a node of another version may not have all, and says none."""
+            answer = future.result()
+            if info is self._info and answer is not None and len(answer.values) == len(others):
+                rest = dict(zip(others, map(parameter_value_to_python, answer.values)))
+                self._post(self.view.hear_parameters, known | rest)
+
+        self._parameters.call(GetParameters.Request(names=others), tell_others)
 
     def _on_state(self, state: BallScrewState) -> None:
         row, record = records.row_of(state), records.state_record(state)
         limits = records.limits_record(state)
         self._post(self.view.hear, row, record, limits, time.monotonic())
-
-    def _on_event(self, event: OutOfZone) -> None:
-        self._post(self.view.hear_event, records.event_record(event))
-
-    def _on_health(self, health: AxisHealth) -> None:
-        self._post(self.view.hear_health, records.health_record(health))
 
     def _on_info(self, info: SurfaceInfo) -> None:
         """Take a surface; the node has been configured again, maybe with other parameters."""

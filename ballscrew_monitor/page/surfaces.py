@@ -11,7 +11,6 @@ few places more, by which the file is known to be that of the node.
 
 from collections.abc import Callable, Mapping, Sequence
 import dataclasses
-import functools
 import itertools
 import math
 import time
@@ -111,17 +110,6 @@ def with_corrections(
     return surface
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class Question:
-    """What a node is to be asked for: its answers at places, `count` of them corrections."""
-
-    about: Mapping[str, Any]
-    surface: Surface
-    places: list[SolvedAt]
-    count: int
-    another: Phrase  # said where the answers are of another surface
-
-
 class PatientClient:
     """A client of a service that is called again if no answer comes in time."""
 
@@ -160,12 +148,13 @@ class SurfaceLink:
         """Ask the node of a `view` through a `node`; `post` calls in the thread of the hub."""
         self._view, self._post = view, post
         self._client = PatientClient(node, EvaluateOperatingPoint, f'{view.node}/evaluate')
-        self._question: Question | None = None
+        self._request: EvaluateOperatingPoint.Request | None = None
+        self._hear: Callable[[Future], None] = lambda future: None
 
     @property
     def is_asking(self) -> bool:
         """Return True if the node has corrections that are not known yet."""
-        return self._question is not None
+        return self._request is not None
 
     def close(self) -> None:
         """Ask no more."""
@@ -176,36 +165,32 @@ class SurfaceLink:
         surface, no_map = known_surface(info, wanted)
         count = len(info.corrected_speed)
         self._post(self._view.know, about, surface, no_map, count)
-        self._question = None
+        self._request = None
         self._client.drop()
-        if surface is not None and count:
-            self._question = Question(
-                about=about,
-                surface=surface,
-                places=places_of(info, surface),
-                count=count,
-                another=_another(info, wanted),
-            )
-            self.ask()
+        if surface is None or not count:
+            return
+        places, another = places_of(info, surface), _another(info, wanted)
+        points = [point_message(place) for place in places]
+        request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
+
+        def hear(future: Future) -> None:
+            """Take an answer; one to a request of before, or a refusal, tells nothing."""
+            answer = future.result()
+            if request is not self._request or answer is None or not answer.success:
+                return
+            self._request = None
+            answers = list(zip(places, answer.results))
+            try:
+                corrected_surface = with_corrections(surface, count, answers)
+            except SurfaceError:  # the map stays without them, and says so
+                return
+            why = another if corrected_surface is None else ''
+            self._post(self._view.know, about, corrected_surface, why)
+
+        self._request, self._hear = request, hear
+        self.ask()
 
     def ask(self) -> None:
         """Ask for the corrections, until they are known; a first answer may be lost."""
-        question = self._question
-        if question is not None:
-            points = [point_message(place) for place in question.places]
-            request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
-            self._client.call(request, functools.partial(self._on_answer, question))
-
-    def _on_answer(self, question: Question, future: Future) -> None:
-        """Take an answer; one to a question of before, or a refusal, tells nothing."""
-        answer = future.result()
-        if question is not self._question or answer is None or not answer.success:
-            return
-        self._question = None
-        answers = list(zip(question.places, answer.results))
-        try:
-            surface = with_corrections(question.surface, question.count, answers)
-        except SurfaceError:  # the map stays without them, and says so
-            return
-        no_map = question.another if surface is None else ''
-        self._post(self._view.know, question.about, surface, no_map)
+        if self._request is not None:
+            self._client.call(self._request, self._hear)

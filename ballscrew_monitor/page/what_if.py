@@ -9,7 +9,6 @@ All is computed in a thread beside the server's, one thing at a time.
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
-import dataclasses
 import logging
 from typing import Any
 import weakref
@@ -32,22 +31,7 @@ QUANTITY = 'efficiency'
 MOST_FACTORS, FACTORS = 5, (0.1, 3.0)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Followed:
-    """What a map was made for: hash of the surface, limits, temperature [degC], loads [N]."""
-
-    sha256: str
-    limits: Limits
-    temperature: float
-    loads: tuple[float, float]
-
-    def suits(self, other: 'Followed') -> bool:
-        """Return True if the map does for another motion."""
-        return (
-            (self.sha256, self.limits) == (other.sha256, other.limits)
-            and abs(self.temperature - other.temperature) < WARMER
-            and not (other.loads[0] < self.loads[0] or other.loads[1] > self.loads[1])
-        )
+Followed = tuple[str, Limits, float, tuple[float, float]]
 
 
 class WhatIf:
@@ -55,6 +39,7 @@ class WhatIf:
 
     def __init__(self, hub: Hub, oils: Iterable[Surface] = ()) -> None:
         self._hub, self._oils = hub, tuple(oils)
+        # What a map was made for: hash of the surface, limits, temperature [degC], loads [N].
         self._followed: weakref.WeakKeyDictionary[AxisView, Followed] = weakref.WeakKeyDictionary()
         self._turn = asyncio.Lock()
 
@@ -96,12 +81,13 @@ class WhatIf:
         motion = maps.Motion.of(rows, limits)
         warmth = maps.oil_temperature(rows, surface)
         view.warmth = warmth
-        wanted = Followed(
-            sha256=surface.sha256, limits=limits, temperature=warmth, loads=motion.load_span()
-        )
-        before = self._followed.get(view)
-        if before is not None and view.map_frame is not None and before.suits(wanted):
-            return
+        if view in self._followed and view.map_frame is not None:
+            sha256, old_limits, old_warmth, (lowest, highest) = self._followed[view]
+            low, high = motion.load_span()
+            same = (sha256, old_limits) == (surface.sha256, limits)
+            if same and abs(old_warmth - warmth) < WARMER and not (low < lowest or high > highest):
+                return
+        exact = warmth
         warmth = round(warmth / WARMER) * WARMER
         record, arrays = await self._in_turn(
             maps.map_of, surface, limits, warmth, motion, QUANTITY
@@ -109,7 +95,7 @@ class WhatIf:
         if view.surface is not surface:  # another has come meanwhile
             return
         loads = record['load']['low'], record['load']['high']
-        self._followed[view] = dataclasses.replace(wanted, loads=loads)
+        self._followed[view] = surface.sha256, limits, exact, loads
         head = {'axis': view.name, 'without': view.without}
         view.map_frame = frame('map', head | record, arrays)
         self._hub.tell(view.map_frame)

@@ -12,7 +12,7 @@ import sys
 from types import SimpleNamespace
 
 from ballscrew_monitor.clients import solve
-from ballscrew_monitor.clients.solve import _Conversation, Question
+from ballscrew_monitor.clients.solve import _Conversation, goal_of
 import pytest
 from rclpy.task import Future
 from surrogate.tasks.child import one_thread_environment
@@ -203,7 +203,7 @@ def test_a_server_not_ready_is_sent_no_goal(
     )
     monkeypatch.setattr(_Conversation, '_hear_refusals', lambda self: [])
     monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: given())
-    talk = _Conversation(None, Question(axis='x'), interrupted)
+    talk = _Conversation(None, goal_of('x'), interrupted)
     assert talk.run(2.0, as_json=False) == code
     assert capsys.readouterr() == ('', (sentence and says(sentence)))
 
@@ -211,6 +211,6 @@ def test_a_server_not_ready_is_sent_no_goal(
 def test_an_interrupt_before_a_node_is_found_needs_no_words(monkeypatch, capsys):
     monkeypatch.setattr(_Conversation, '_hear_refusals', lambda self: [])
     monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: None)
-    talk = _Conversation(None, Question(axis='x'), [signal.SIGTERM])
+    talk = _Conversation(None, goal_of('x'), [signal.SIGTERM])
     assert talk.run(2.0, as_json=False) == 130
     assert capsys.readouterr() == ('', '')

@@ -55,8 +55,8 @@ def test_rows_are_those_of_the_states_that_the_node_publishes(axes_of, judged):
     """To the last bit, the stamp to a microsecond."""
     (axis,) = axes_of()
     said = np.array([row for row, _ in judged])
-    np.testing.assert_array_equal(axis.course.rows[:, 1:], said[:, 1:])
-    np.testing.assert_allclose(axis.course.rows[:, 0], said[:, 0], rtol=0.0, atol=1e-6)
+    np.testing.assert_array_equal(axis.rows[:, 1:], said[:, 1:])
+    np.testing.assert_allclose(axis.rows[:, 0], said[:, 0], rtol=0.0, atol=1e-6)
 
 
 def test_what_is_shown_is_what_the_state_said(playing, judged):
@@ -76,7 +76,7 @@ def test_what_is_shown_is_what_the_state_said(playing, judged):
 def test_a_light_load_in_the_optimal_zone_is_said_as_the_state_says_it(axes_of):
     """Also where the load is above its limit, and the gate of the light load is still shut."""
     (axis,) = axes_of()
-    row = axis.course.rows[-1].copy()
+    row = axis.rows[-1].copy()
     row[[COLUMNS.index(name) for name in ('load_N', 'efficiency')]] = 1e3, math.nan
     codes = np.array([Zone.OPTIMAL, 0], np.uint8)
     row[COLUMNS.index('rcs')] = 0.0
@@ -119,7 +119,7 @@ def test_wherever_it_jumps_the_rows_before_are_there(axes_of, playing_once, plac
         ask(playing_once, 'seek', s=place)
         playing_once.advance(0.0, 0.0)
         at = min(max(place, 0.0), playing_once.clock()['span_s'])
-        course = playing_once._axes[0].course.rows
+        course = playing_once._axes[0].rows
         stamps = axis_of(playing_once).history.since(0)[:, 0]
         until = course[course[:, 0] <= course[0, 0] + at, 0]
         assert until[-1] - STEP < stamps[-1] <= until[-1]
