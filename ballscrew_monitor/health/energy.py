@@ -9,7 +9,6 @@ now, so that another programme, load or temperature is no loss. Days are the uni
 """
 
 from collections.abc import Iterable, Sequence
-import dataclasses
 import math
 
 from ballscrew_monitor.health.life import recent
@@ -25,24 +24,6 @@ LOST, AGAINST = 'energy lost', 'energy against the baseline'
 BEYOND = 'energy beyond the baseline'
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Ratio:
-    """Measured over expected energy [-], half width of its 95 % interval, and number of days."""
-
-    value: float
-    half_width: float
-    days: int
-
-    def reason(self, when: str) -> str:
-        """Return why the ratio of some days is not known, '' where it is."""
-        if self.days < FEWEST_DAYS or not math.isfinite(self.half_width):
-            return (
-                f'not known yet: torque and load were measured on {self.days} days of {when}, '
-                f'needed are {FEWEST_DAYS}'
-            )
-        return ''
-
-
 def energy_quantities(
     bins: Sequence[SpectrumBin], baseline: Baseline | None, today: int
 ) -> list[Quantity]:
@@ -54,9 +35,9 @@ def energy_quantities(
 
     """
     latest = recent(bins, today, RECENT)
-    now = ratio_of(latest)
-    reason = now.reason(f'the last {RECENT} days')
-    if not reason and now.value <= 0.0:
+    now, now_half, now_days = ratio_of(latest)
+    reason = _ratio_reason(now_half, now_days, f'the last {RECENT} days')
+    if not reason and now <= 0.0:
         reason = (
             'not known: the measured torque is less than the load needs, as with a load of '
             'another sign or unit'
@@ -66,30 +47,40 @@ def energy_quantities(
     else:
         modelled = sum(each.energy_lost for each in latest) / KILOWATT_HOUR
         hours = sum(each.time for each in latest) / (60 * MINUTE)
-        ratios = now.value, max(now.value - now.half_width, 0.0), now.value + now.half_width
-        text = f'{hours:.3g} h of motion in {RECENT} days, torque measured on {now.days}'
+        ratios = now, max(now - now_half, 0.0), now + now_half
+        text = f'{hours:.3g} h of motion in {RECENT} days, torque measured on {now_days}'
         lost = quantity(LOST, 'kWh', (modelled * ratio for ratio in ratios), text)
-    before = Ratio(NAN, NAN, 0) if baseline is None else ratio_of(within(bins, baseline))
+    before, before_half, before_days = ratio_of(within(bins, baseline) if baseline else ())
     reason = 'not known yet: there is no baseline' if baseline is None else reason
-    reason = reason or before.reason('the baseline')
-    if not reason and min(before.value - before.half_width, now.value - now.half_width) <= 0.0:
+    reason = reason or _ratio_reason(before_half, before_days, 'the baseline')
+    if not reason and min(before - before_half, now - now_half) <= 0.0:
         reason = 'not known: the measured loss scatters more than it amounts to'
     if reason:
         return [lost, unknown(AGAINST, '-', reason), unknown(BEYOND, 'kWh', reason)]
-    ratio = now.value / before.value
-    half = ratio * math.hypot(now.half_width / now.value, before.half_width / before.value)
-    text = f'{before.days} days of the baseline and {now.days} of now, at equal motion'
+    ratio = now / before
+    half = ratio * math.hypot(now_half / now, before_half / before)
+    text = f'{before_days} days of the baseline and {now_days} of now, at equal motion'
     ends = ratio, ratio - half, ratio + half
     beyond = (lost.value * (1 - 1 / max(end, 1e-9)) for end in ends)
     return [lost, quantity(AGAINST, '-', ends, text), quantity(BEYOND, 'kWh', beyond, text)]
 
 
-def ratio_of(bins: Iterable[SpectrumBin]) -> Ratio:
-    """
-    Return measured over expected energy by the sums of days, with the scatter between them.
+def _ratio_reason(half_width: float, days: int, when: str) -> str:
+    """Return why a ratio of energies is not known, '' where it is."""
+    if days >= FEWEST_DAYS and math.isfinite(half_width):
+        return ''
+    return (
+        f'not known yet: torque and load were measured on {days} days of {when}, needed are '
+        f'{FEWEST_DAYS}'
+    )
 
-    A weighted mean by expected energy; Student's factor for the number of days. The half width is
-    infinite for one period.
+
+def ratio_of(bins: Iterable[SpectrumBin]) -> tuple[float, float, int]:
+    """
+    Return measured over expected energy [-], half its 95 % interval, and the number of days.
+
+    A weighted mean of the sums of days by expected energy; Student's factor for their number. The
+    half width is infinite for one period, both are NaN for none.
 
     """
     sums: dict[tuple[int, int], list[float]] = {}
@@ -99,17 +90,17 @@ def ratio_of(bins: Iterable[SpectrumBin]) -> Ratio:
             day[0] += each.energy_measured
             day[1] += each.energy_expected
     if not sums:
-        return Ratio(NAN, NAN, 0)
+        return NAN, NAN, 0
     total = sum(expected for _, expected in sums.values())
     value = sum(measured for measured, _ in sums.values()) / total
     days, count = sum(length for _, length in sums), len(sums)
     if count < 2:
-        return Ratio(value, math.inf, days)
+        return value, math.inf, days
     weights = [expected / total for _, expected in sums.values()]
     apart = [measured / expected - value for measured, expected in sums.values()]
     spread = sum(w * a * a for w, a in zip(weights, apart, strict=True)) * count / (count - 1)
     scatter = max(spread, (FLOOR * value) ** 2) * sum(w * w for w in weights)
-    return Ratio(value, student(count - 1) * math.sqrt(scatter), days)
+    return value, student(count - 1) * math.sqrt(scatter), days
 
 
 def student(freedom: int) -> float:
