@@ -151,18 +151,18 @@ def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
 
 def test_what_comes_while_the_topics_are_looked_at_keeps_its_order(bench, monkeypatch):
     """A load and then a speed, just after the topic of the load has been looked at."""
-    waiting, sent = Topic.waiting, []
+    taken, sent = Topic.taken, []
 
     def late(topic):
-        found = waiting(topic)
+        found = taken(topic)
         if topic.name != '/speed' or sent:
             return found
         for name in ('load', 'speed'):
             sent.append(name)
             bench.publish(name, len(sent))
-        return bench.until(lambda: waiting(topic), meanwhile=nothing)
+        return bench.until(lambda: taken(topic), meanwhile=nothing)
 
-    monkeypatch.setattr(Topic, 'waiting', late)
+    monkeypatch.setattr(Topic, 'taken', late)
     assert bench.intake.drain()
     assert [event.value for event in bench.taken] == [1.0, 2.0]
 
