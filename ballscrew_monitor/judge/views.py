@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory as the typed values that messages and reports are made of."""
 
+import functools
 import math
 from typing import Any
 
@@ -67,6 +68,8 @@ def input_status_of(
     `field` is the path of its number, `joints` are those that other messages name.
 
     """
+    if not settings.configured[source]:
+        return _never_read(source, input_state_of(memory, settings, source, now))
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
@@ -106,6 +109,11 @@ def input_status_of(
         refusal=refusal,
         joints=joints if memory.others[source] else None,
     )
+
+
+@functools.cache
+def _never_read(source: Source, state: InputState) -> InputStatus:
+    return InputStatus(source=source, state=state)
 
 
 def _rate(memory: Any, source: Source) -> float:

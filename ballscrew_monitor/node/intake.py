@@ -58,7 +58,7 @@ from surrogate.files import InputError
 CLOCK = '/clock'
 PAUSE = 5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 4e-5  # [s] the same for each topic, twenty times what a look at it takes
-LONGER = 4.0  # times the pause while turns are judged compiled: the larger they are the better
+LONGER = 8.0  # times the pause while turns are judged compiled: the larger they are the better
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 STEPS = 9  # of `/clock`, of which the middle one counts
@@ -238,7 +238,7 @@ class Intake(Waitable):
         stay = min(STAY, self._time_to_timer())
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < stay:
-            time.sleep(pause)
+            time.sleep(min(pause, max(begin + stay - now, PAUSE)))
             now = time.monotonic()
             if self.drain():
                 came = now

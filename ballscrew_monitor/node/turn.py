@@ -130,7 +130,7 @@ class TurnReader:
         for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
             events[at] = _record(_read_again(found, at, slots))
         axes = np.array([self._numbers[slot.axis.name] for slot in slots.slots], np.int64)
-        numbers, joints = axes[found.slot], {}
+        numbers, joints = axes[found.slot], dict[int, OtherJoints]()
         if len(odd):
             events, numbers, joints = self._with_odd(burst, odd, found.message, events, numbers)
         order = _order(events)
