@@ -431,6 +431,24 @@ def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkey
     assert counts == [counts[0], 1, counts[0], 1]
 
 
+@pytest.mark.parametrize(('left', 'count'), [(STAY, 0), (0.0, 1)])
+def test_before_its_first_pause_a_turn_judged_compiled_looks_only_if_a_timer_is_due(
+    bench, monkeypatch, left, count
+):
+    watch, looks = Watch(monkeypatch), []
+    rest(bench.intake, monkeypatch)
+    monkeypatch.setattr(bench.intake, '_compiled', types.SimpleNamespace(are_due=True))
+    monkeypatch.setattr(bench.intake, '_time_to_timer', lambda: left)
+    begin = watch.now
+    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(watch.now - begin) or True)
+    turns(bench.intake)
+    assert looks.count(0.0) == count
+    assert max(looks) == pytest.approx(left)
+    before = len(looks)
+    turns(bench.intake)  # which leaves the others their turn
+    assert len(looks) - before == count
+
+
 def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatch):
     taken = []
 
