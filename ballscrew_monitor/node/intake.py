@@ -117,6 +117,7 @@ class Intake(Waitable):
         self._awaited: list[Topic] = []  # whose messages the executor waits for
         self._handlers: list[EventHandler] = []  # that it waits for
         self._stayed = False  # for all of STAY, the last time
+        self._flows = False  # more came until the end of the last turn
         self.topics: dict[str, Topic] = {}
         self._axes = list(axes)
         self._compiled, self._take_many = compiled, take_many
@@ -226,11 +227,11 @@ class Intake(Waitable):
         Take what waits, and look again while more comes: cheaper than to be woken for each.
 
         Not when a timer of the executor is due, nor twice in a row for all of STAY: the executor
-        may come back before the others' turn. A turn that is judged compiled begins after a pause,
-        for it is the cheaper for each message the more there are.
+        may come back before the others' turn. While messages flow, a turn that is judged compiled
+        begins after a pause: it is the cheaper for each message the more there are.
 
         """
-        if not self.is_compiled or self._time_to_timer() <= 0.0:
+        if not (self._flows and self.is_compiled) or self._time_to_timer() <= 0.0:
             self.drain()
         if self._stayed:
             self._stayed = False
@@ -245,6 +246,7 @@ class Intake(Waitable):
             if self.drain():
                 came = now
         self._stayed = now - begin >= STAY
+        self._flows = begin < came and now - came < QUIET
 
     def _time_to_timer(self) -> float:
         """

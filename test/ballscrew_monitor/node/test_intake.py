@@ -431,22 +431,23 @@ def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkey
     assert counts == [counts[0], 1, counts[0], 1]
 
 
-@pytest.mark.parametrize(('left', 'count'), [(STAY, 0), (0.0, 1)])
-def test_before_its_first_pause_a_turn_judged_compiled_looks_only_if_a_timer_is_due(
-    bench, monkeypatch, left, count
+@pytest.mark.parametrize(('due', 'count'), [(False, 0), (True, 1)])
+def test_while_messages_flow_a_turn_judged_compiled_begins_with_a_pause_if_no_timer_is_due(
+    bench, monkeypatch, due, count
 ):
-    watch, looks = Watch(monkeypatch), []
+    watch, looks, left = Watch(monkeypatch), [], [STAY]
     rest(bench.intake, monkeypatch)
     monkeypatch.setattr(bench.intake, '_compiled', types.SimpleNamespace(are_due=True))
-    monkeypatch.setattr(bench.intake, '_time_to_timer', lambda: left)
+    monkeypatch.setattr(bench.intake, '_time_to_timer', lambda: left[0])
+    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(watch.now) or True)
     begin = watch.now
-    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(watch.now - begin) or True)
     turns(bench.intake)
-    assert looks.count(0.0) == count
-    assert max(looks) == pytest.approx(left)
-    before = len(looks)
-    turns(bench.intake)  # which leaves the others their turn
-    assert len(looks) - before == count
+    assert looks[0] == begin  # nothing flowed before
+    left[0] = 0.0 if due else STAY
+    for _ in range(2):  # the first one leaves the others their turn
+        before, begin = len(looks), watch.now
+        turns(bench.intake)
+        assert looks[before:].count(begin) == count
 
 
 def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatch):
