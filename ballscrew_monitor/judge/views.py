@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory as the typed values that messages and reports are made of."""
 
+import functools
 import math
 from typing import Any
 
@@ -67,6 +68,9 @@ def input_status_of(
     `field` is the path of its number, `joints` are those that other messages name.
 
     """
+    state = input_state_of(memory, settings, source, now)
+    if state is InputState.NOT_CONFIGURED:
+        return _never_read(source)
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
@@ -83,7 +87,7 @@ def input_status_of(
         refusal = inputs.refusal_text(source, Why(why), *numbers, most=most, field=field)
     return InputStatus(
         source=source,
-        state=input_state_of(memory, settings, source, now),
+        state=state,
         rate=_rate(memory, source),
         stamp_source=StampSource(int(memory.stamp_source[source]) if known else 0),
         age=max(0.0, seconds(now - int(memory.arrival[source]))) if known else NAN,
@@ -106,6 +110,11 @@ def input_status_of(
         refusal=refusal,
         joints=joints if memory.others[source] else None,
     )
+
+
+@functools.cache
+def _never_read(source: Source) -> InputStatus:
+    return InputStatus(source=source, state=InputState.NOT_CONFIGURED)
 
 
 def _rate(memory: Any, source: Source) -> float:

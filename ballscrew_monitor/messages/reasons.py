@@ -88,8 +88,13 @@ def summary(
             for status in faulty
         ]
         return Standing.LOST, '; '.join(texts), fault_code(faulty[0])
+    read = [
+        (status, links.get(status.source))
+        for status in inputs
+        if status.state is not InputState.NOT_CONFIGURED
+    ]
     for code, (happens, cure) in _TROUBLES.items():
-        statuses = [status for status in inputs if happens(status, links.get(status.source))]
+        statuses = [status for status, link in read if happens(status, link)]
         if statuses:
             return (
                 Standing.DEGRADED,

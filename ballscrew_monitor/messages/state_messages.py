@@ -15,7 +15,7 @@ from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
-from ballscrew_monitor.core.inputs import InputStatus, Source
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source
 from ballscrew_monitor.core.judgement import (
     Code,
     EventEnd,
@@ -40,6 +40,8 @@ from surrogate.units import TURN
 
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
+NOT_CONFIGURED = InputState.NOT_CONFIGURED
+GATES = [gate for gate in Gate if gate]
 USUAL = 'nothing has to be done: usual for this axis'
 
 
@@ -205,13 +207,15 @@ def fill_state(message: msg.BallScrewState, row: Any, monitor: Monitor) -> tuple
     fill_window(message.window, monitor.memory)
     fill_totals(message.totals, monitor.memory)
     for part, status in zip(message.inputs, inputs):
-        fill_input(part, status)
+        if part.state != NOT_CONFIGURED or status.state is not NOT_CONFIGURED:  # which stays
+            fill_input(part, status)
     limits = monitor.settings.limits
     message.level, message.zone = int(row.level), int(row.zone)
     fill_time(message.level_since, int(row.level_since))
     message.event_id = int(row.event_id)
     message.findings = findings_of(row, limits, reason)
-    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
+    gates = int(row.gates)
+    message.active_gates = [int(gate) for gate in GATES if gates & 1 << gate - 1] if gates else []
     message.rcs_limit = float(limits.rcs)
     message.efficiency_limit = float(limits.efficiency)
     message.light_load_limit = float(limits.light_load)

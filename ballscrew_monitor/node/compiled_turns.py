@@ -27,8 +27,10 @@ def load(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Compile what judges many events, or load it out of its cache; a task."""
     from ballscrew_monitor.health import collect
     from ballscrew_monitor.judge import many
+    from ballscrew_monitor.recordings.bulk import ways
 
     many.prepare()
+    ways.prepare()
     collect.prepare()
     return {}
 

@@ -32,10 +32,19 @@ from ballscrew_monitor.core.inputs import (
 )
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.tick_grid import ClockSteps, LEAST_STEP
+from ballscrew_monitor.node.burst import Burst
 from ballscrew_monitor.node.compiled_turns import CompiledTurns
 from ballscrew_monitor.node.event_recorder import AxisEvent, EventRecorder, Heard, SILENT
 from ballscrew_monitor.node.sources import READING, Reading
-from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
+from ballscrew_monitor.node.topic import (
+    Apart,
+    Arrival,
+    link_of,
+    open_topic,
+    RECEIVED,
+    Taken,
+    Topic,
+)
 from ballscrew_monitor.node.turn import AxisTurn, TurnReader
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import publishers_on
@@ -47,9 +56,9 @@ from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
 CLOCK = '/clock'
-PAUSE = 5e-4  # [s] between two looks at the inputs while messages come, at least
+PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 4e-5  # [s] the same for each topic, twenty times what a look at it takes
-LONGER = 4.0  # times the pause while turns are judged compiled: the larger they are the better
+LONGER = 8.0  # times the pause while turns are judged compiled: the larger they are the better
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 STEPS = 9  # of `/clock`, of which the middle one counts
@@ -108,6 +117,7 @@ class Intake(Waitable):
         self._awaited: list[Topic] = []  # whose messages the executor waits for
         self._handlers: list[EventHandler] = []  # that it waits for
         self._stayed = False  # for all of STAY, the last time
+        self._flows = False  # more came until the end of the last turn
         self.topics: dict[str, Topic] = {}
         self._axes = list(axes)
         self._compiled, self._take_many = compiled, take_many
@@ -217,10 +227,12 @@ class Intake(Waitable):
         Take what waits, and look again while more comes: cheaper than to be woken for each.
 
         Not when a timer of the executor is due, nor twice in a row for all of STAY: the executor
-        may come back before the others' turn.
+        may come back before the others' turn. While messages flow, a turn that is judged compiled
+        begins after a pause: it is the cheaper for each message the more there are.
 
         """
-        self.drain()
+        if not (self._flows and self.is_compiled) or self._time_to_timer() <= 0.0:
+            self.drain()
         if self._stayed:
             self._stayed = False
             return
@@ -229,11 +241,12 @@ class Intake(Waitable):
         stay = min(STAY, self._time_to_timer())
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < stay:
-            time.sleep(pause)
+            time.sleep(min(pause, max(begin + stay - now, PAUSE)))
             now = time.monotonic()
             if self.drain():
                 came = now
         self._stayed = now - begin >= STAY
+        self._flows = begin < came and now - came < QUIET
 
     def _time_to_timer(self) -> float:
         """
@@ -272,22 +285,31 @@ class Intake(Waitable):
             by_source[source] = link_of(self._node, name, read, several=several, problem=problem)
         return by_source
 
-    def _waiting(self) -> list[Arrival]:
+    def _taken(self) -> list[tuple[Topic, list[Taken]]]:
         """
-        Return all that waits in the order of arrival.
+        Return all that waits, by topics.
 
         While the topics are looked at one after the other, a message may come to one that has been
         looked at, and a later message to one that has not. So they are looked at again if anything
         has arrived since the look began.
 
         """
-        arrivals: list[Arrival] = []
+        topics = [(topic, list[Taken]()) for topic in self._all]
         for _ in range(MOST_LOOKS):
-            begin = time.time_ns()
-            look = [arrival for topic in self._all for arrival in topic.waiting()]
-            arrivals += look
-            if all(arrival.received <= begin for arrival in look):
+            begin, newest = time.time_ns(), 0
+            for topic, messages in topics:
+                if look := topic.taken():
+                    messages += look
+                    newest = max(newest, *(info[RECEIVED] for _, info in look))
+            if newest <= begin:
                 break
+        return topics
+
+    def _waiting(self) -> list[Arrival]:
+        """Return all that waits in the order of arrival."""
+        arrivals = [
+            topic.arrival(*taken) for topic, messages in self._taken() for taken in messages
+        ]
         return sorted(arrivals, key=operator.attrgetter('received'))
 
     def drain(self) -> bool:
@@ -296,10 +318,32 @@ class Intake(Waitable):
         if self._clock is None:  # by how much [ns] the clock of the system was set
             before = time.monotonic_ns()
             step = self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
+        at_once = self.is_compiled and self._clock is None and not step
+        messages, events = self._drain_at_once() if at_once else self._drain_each(step)
+        if messages:
+            now = time.monotonic()
+            self._worked(now - begin, messages)
+            if self._compiled is not None:
+                self._compiled.count(events, now)
+        return messages > 0
+
+    def _drain_at_once(self) -> tuple[int, int]:
+        """Hand over all that waits as one turn; return how many messages and events that was."""
+        taken = self._taken()
+        counts = [len(messages) for _, messages in taken]
+        if not any(counts):
+            return 0, 0
+        now, wall = self.now, time.time_ns()
+        self._learn()
+        self._hand_over_burst(Burst.taken(taken, now, wall))
+        return sum(counts), sum(len(topic.readers) * len(messages) for topic, messages in taken)
+
+    def _drain_each(self, step: int) -> tuple[int, int]:
+        """Hand over all that waits; a `step` [ns] of the clock and one of `/clock` end a turn."""
         arrivals = self._waiting()
         if not arrivals:
             self._hand_over([], step)
-            return False
+            return 0, 0
         now, wall = self.now, time.time_ns()
         self._learn()
         heard: list[Heard] = []
@@ -316,12 +360,10 @@ class Intake(Waitable):
                 step = 0
             heard.append((arrival, at, lost))
         self._hand_over(heard, step)
-        now_steady = time.monotonic()
-        self._worked(now_steady - begin, len(arrivals))
+        events = 0
         if self._compiled is not None:
             events = sum(len(arrival.topic.readers) for arrival in arrivals)
-            self._compiled.count(events, now_steady)
-        return True
+        return len(arrivals), events
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
         """
@@ -331,9 +373,10 @@ class Intake(Waitable):
 
         """
         if heard:
-            hand_over = self._hand_over_many if self.is_compiled else self._hand_over_each
-            hand_over(heard)
-            self._recorder.flush()
+            if self.is_compiled:
+                self._hand_over_burst(Burst.of(heard))
+            else:
+                self._hand_over_each(heard)
             heard.clear()
         if step:
             now = self.now
@@ -349,17 +392,20 @@ class Intake(Waitable):
         self._recorder.flush()  # whatever becomes of the node with these events
         for axis, event in turn:
             self._take(axis, event)
+        self._recorder.flush()
 
-    def _hand_over_many(self, heard: list[Heard]) -> None:
-        turn = self._turns.turn(heard, self._reading)
-        self._recorder.hear(heard)
+    def _hand_over_burst(self, burst: Burst) -> None:
+        turn = self._turns.turn(burst, self._reading)
         if self._recorder.on:
+            if self._recorder.raw:
+                self._recorder.hear([burst.heard(at) for at in range(len(burst.now))])
             names = [self._axes[number].name for number in turn.numbers.tolist()]
-            now, steady = heard[-1][1], time.monotonic_ns()
+            now, steady = int(burst.now[-1]), time.monotonic_ns()
             self._recorder.take_many(turn.events, names, turn.joints, now, steady)
             self._recorder.flush()
         for part in turn.by_axis():
             self._take_many(part)
+        self._recorder.flush()
 
     @property
     def is_compiled(self) -> bool:

@@ -50,7 +50,7 @@ class RawField:
 
     def __init__(self, source: Input) -> None:
         """Make the steps; raises NoLayout when that is not possible."""
-        layout = Layout(source)
+        self.layout = layout = Layout(source)
         self._steps = [tuple(step) for step in layout.steps.tolist()]
         if any(step[0] not in (NUMBERS, TEXTS) for step in self._steps):
             raise NoLayout  # behind a list of messages

@@ -9,6 +9,7 @@ message it is. Every publisher numbers its messages upward.
 """
 
 from collections import deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ballscrew_monitor.core.inputs import Source
@@ -65,6 +66,16 @@ class LossCounter:
             self._last.clear()
         self._last.append(number)
         return 0 if self.publishers <= 1 else None
+
+    def take_many(self, numbers: Sequence[int]) -> list[int | None]:
+        """Return the same for messages one after the other."""
+        if self.publishers <= 1 and len(self._last) == 1:
+            before = self._last + list(numbers)
+            gaps = [number - last - 1 for last, number in zip(before, numbers)]
+            if min(gaps, default=0) >= 0:
+                self._last = before[-1:]
+                return list(gaps)
+        return [self.take(number) for number in numbers]
 
 
 class SourceCounter:

@@ -24,7 +24,9 @@ from rclpy.subscription import Subscription
 MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
-
+Taken = tuple[Any, dict[str, Any]]
+"""A message or its bytes, and what the middleware says of it."""
+RECEIVED, NUMBER = 'received_timestamp', 'publication_sequence_number'
 
 UNREAD = object()
 """A message that nobody has decoded yet."""
@@ -96,10 +98,10 @@ class Topic:
 
     def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
         """Return what was taken with what the middleware says of it."""
-        received, number = info['received_timestamp'], info['publication_sequence_number']
+        received, number = info[RECEIVED], info[NUMBER] or NO_NUMBER
         if self.subscription.raw:
-            return Arrival(received, UNREAD, number or NO_NUMBER, self, taken)
-        return Arrival(received, taken, number or NO_NUMBER, self)
+            return Arrival(received, UNREAD, number, self, taken)
+        return Arrival(received, taken, number, self)
 
     def decoded(self, data: bytes) -> Any:
         """Return the message of some bytes, None if they are of another definition of its type."""
@@ -109,28 +111,30 @@ class Topic:
             return None
 
     def waiting(self) -> list[Arrival]:
+        """Return what waits in the queue of the subscription, which is then empty."""
+        return [self.arrival(*taken) for taken in self.taken()]
+
+    def taken(self) -> list[Taken]:
         """
-        Return what waits in the queue of the subscription, which is then empty.
+        Return the same as the middleware gives it.
 
         When the publishers have changed it may be of those before and of those now, whose numbers
         do not go together.
 
         """
-        arrivals: list[Arrival] = []
-        subscription = self.subscription
-        with subscription.handle:
-            while len(arrivals) < MOST:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-                if taken is None:
-                    break
-                arrivals.append(self.arrival(*taken))
-        if arrivals:  # the event that tells of it may not have had its turn
+        messages: list[Taken] = []
+        subscription, handle = self.subscription, self.subscription.handle
+        with handle:
+            take, kind, raw = handle.take_message, subscription.msg_type, subscription.raw
+            while len(messages) < MOST and (taken := take(kind, raw)) is not None:
+                messages.append(taken)
+        if messages:  # the event that tells of it may not have had its turn
             count = subscription.get_publisher_count()
             if count != self.loss.publishers:
                 self.loss.match(count)
-                for arrival in arrivals:
-                    arrival.number = NO_NUMBER
-        return arrivals
+                for _, info in messages:
+                    info[NUMBER] = NO_NUMBER
+        return messages
 
 
 def _raw_field(source: Input) -> RawField | None:

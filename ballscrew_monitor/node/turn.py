@@ -3,22 +3,26 @@
 """
 The messages of one turn as an array of events in the order of judging.
 
-The numbers of all messages are taken together; one that gives no plain sample is read by itself.
-So the events are those that the messages give one by one.
+The numbers of all messages are taken in one go, by compiled code where there is numba; a message
+that gives no plain sample is read by itself. So the events are those that the messages give one by
+one.
 
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, StampSource
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST
 from ballscrew_monitor.judge.records import Event, NOT_KNOWN, REFUSAL, SAMPLE
+from ballscrew_monitor.node.burst import Burst
 from ballscrew_monitor.node.event_recorder import AxisEvent, Heard
-from ballscrew_monitor.node.sources import Reading
+from ballscrew_monitor.node.sources import InputName, NO_NUMBER, Reading
 from ballscrew_monitor.node.topic import Topic
-from ballscrew_monitor.recordings.bulk.events import blank, Events, some
+from ballscrew_monitor.recordings.bulk.events import blank, Events, joined, some
+from ballscrew_monitor.recordings.bulk.layout import Layout
+from ballscrew_monitor.recordings.bulk.ways import Ways
 from ballscrew_monitor.settings.axis import Axis
 import numpy as np
 from numpy.typing import NDArray
@@ -56,31 +60,56 @@ class Turn(NamedTuple):
 
     def by_axis(self) -> list[AxisTurn]:
         """Return the events of each axis that has any."""
+        order = np.argsort(self.numbers, kind='stable')
+        numbers, events = self.numbers[order], some(self.events, order)
+        begins = np.flatnonzero(np.diff(numbers, prepend=-1)).tolist()
         turns = []
-        for number in np.unique(self.numbers).tolist():
-            places = np.flatnonzero(self.numbers == number)
+        for begin, end in zip(begins, [*begins[1:], len(order)]):
             joints = {
                 at: self.joints[place]
-                for at, place in enumerate(places.tolist() if self.joints else ())
+                for at, place in enumerate(order[begin:end].tolist() if self.joints else ())
                 if place in self.joints
             }
-            turns.append(AxisTurn(self.axes[number], some(self.events, places), joints))
+            turns.append(AxisTurn(self.axes[numbers[begin]], events[begin:end], joints))
         return turns
 
 
 class _Slot(NamedTuple):
-    """An input that is read in a turn, what finds its number, and how far stamps may lead [ns]."""
+    """An input that is read in a turn, and the way to its number."""
 
     axis: Axis
     source: Input
-    find: Callable[[bytes], tuple[float, int] | None]
-    most_ahead: int
+    layout: Layout
 
 
-Found = tuple[int, float, int, int, int]
-"""Number of a slot, number and stamp of a message, its arrival, messages lost before it."""
-ODD = 0, 0.0, 0, 0, 0
-"""What stands for an event of a message that is read by itself."""
+class _Slots:
+    """The inputs that are read in turns of some topics, those of a topic in a row."""
+
+    def __init__(self, topics: Sequence[Topic], several: frozenset[InputName]) -> None:
+        by_topic = [_slots_of(topic, several) for topic in topics]
+        self.slots = [slot for slots in by_topic for slot in slots]
+        self.counts = np.array([len(slots) for slots in by_topic], np.intp)
+        self.begins = np.cumsum(self.counts) - self.counts
+        self.source = np.array([slot.source.source for slot in self.slots], np.int64)
+        scalings = [slot.source.scaling for slot in self.slots]
+        self.factor = np.array([scaling.factor for scaling in scalings], np.float64)
+        self.shift = np.array([scaling.shift for scaling in scalings], np.float64)
+        self.ways = Ways([slot.layout for slot in self.slots])
+        for topic, slots in zip(topics, by_topic):
+            for slot in slots:  # of one publisher, whatever its numbers are
+                topic.count((slot.axis.name, slot.source.source), NO_NUMBER, 0)
+
+
+class _Found(NamedTuple):
+    """Numbers of slots in messages, the stamps of these, their arrivals, and losses before."""
+
+    message: NDArray[np.intp]
+    slot: NDArray[np.intp]
+    number: NDArray[np.float64]
+    stamp: NDArray[np.int64]
+    now: NDArray[np.int64]
+    lost: NDArray[np.int64]
+    most_ahead: NDArray[np.int64]  # of `now`, for a stamp
 
 
 class TurnReader:
@@ -90,68 +119,94 @@ class TurnReader:
         """`read` returns what one message says."""
         self._axes, self._read = axes, read
         self._numbers = {axis.name: number for number, axis in enumerate(axes)}
+        self._known: tuple[Any, ...] = ()  # of the slots
+        self._slots = _Slots([], frozenset())
 
-    def turn(self, heard: Sequence[Heard], reading: Reading) -> Turn:
+    def turn(self, burst: Burst, reading: Reading) -> Turn:
         """Return the events of messages in the order of judging."""
-        slots: list[_Slot] = []
-        topics: dict[str, range] = {}  # of the slots of each topic
-        found: list[Found] = []
-        odd: dict[int, AxisEvent] = {}
-        for one in heard:
-            arrival, now, lost = one
-            mine = topics.get(arrival.topic.name)
-            if mine is None:
-                mine = topics[arrival.topic.name] = _open(arrival.topic, reading, slots)
-                for slot in mine:
-                    name = slots[slot].axis.name, slots[slot].source.source
-                    arrival.topic.count(name, arrival.number, now)
-            numbers = [slots[slot].find(arrival.data) for slot in mine]
-            if not numbers or None in numbers:
-                events = self._read(one)
-                odd |= enumerate(events, len(found))
-                found += [ODD] * len(events)
-                continue
-            missing = NOT_KNOWN if lost is None else lost
-            for slot, number in zip(mine, numbers, strict=True):
-                assert number is not None
-                found.append((slot, *number, now, missing))
-        return self._ordered(slots, found, odd)
-
-    def _ordered(
-        self, slots: Sequence[_Slot], found: Sequence[Found], odd: dict[int, AxisEvent]
-    ) -> Turn:
-        """Return the turn of what was found, but for the events at odd places."""
-        events = _samples(slots, found) if slots and found else blank(len(found))
-        for place in np.flatnonzero(events['kind'] == REFUSAL).tolist():
-            odd[place] = slots[found[place][0]].axis, _read_again(slots, found[place])
-        of_slots = [self._numbers[slot.axis.name] for slot in slots] or [0]
-        numbers = np.array([of_slots[slot] for slot, *_ in found], np.int64)
-        joints = {}
-        for place, (axis, event) in odd.items():
-            record = Event()
-            fill(record, event)
-            events[place], numbers[place] = as_array(record)[0], self._numbers[axis.name]
-            if isinstance(event, Refusal) and event.joints is not None:
-                joints[place] = event.joints
+        slots = self._slots_of(burst.topics, reading.several)
+        found, odd = _find(burst, slots, reading.ahead)
+        events = _samples(found, slots)
+        for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
+            events[at] = _record(_read_again(found, at, slots))
+        axes = np.array([self._numbers[slot.axis.name] for slot in slots.slots], np.int64)
+        numbers, joints = axes[found.slot], dict[int, OtherJoints]()
+        if len(odd):
+            events, numbers, joints = self._with_odd(burst, odd, found.message, events, numbers)
         order = _order(events)
-        if joints:
-            places = np.argsort(order)
-            joints = {int(places[place]): one for place, one in joints.items()}
-        return Turn(self._axes, some(events, order), numbers[order], joints)
+        return Turn(self._axes, some(events, order), numbers[order], _moved(joints, order))
+
+    def _slots_of(self, topics: Sequence[Topic], several: frozenset[InputName]) -> _Slots:
+        """Return the slots of topics, those of before while nothing has changed."""
+        known = (
+            several,
+            *((topic.name, len(topic.readers), topic.loss.publishers > 1) for topic in topics),
+        )
+        if known != self._known:
+            self._known, self._slots = known, _Slots(topics, several)
+        return self._slots
+
+    def _with_odd(
+        self,
+        burst: Burst,
+        odd: NDArray[np.intp],
+        message: NDArray[np.intp],
+        events: Events,
+        numbers: NDArray[np.int64],
+    ) -> tuple[Events, NDArray[np.int64], dict[int, OtherJoints]]:
+        """Return the events of messages with those of others, which are read by themselves."""
+        read = [
+            (at, axis, event) for at in odd.tolist() for axis, event in self._read(burst.heard(at))
+        ]
+        joints = {
+            at: event.joints
+            for at, (_, _, event) in enumerate(read, len(events))
+            if isinstance(event, Refusal) and event.joints is not None
+        }
+        events = joined([events, *(_record(event) for _, _, event in read)])
+        others = np.array([self._numbers[axis.name] for _, axis, _ in read], np.int64)
+        messages = np.concatenate((message, np.array([at for at, _, _ in read], np.intp)))
+        order = np.argsort(messages, kind='stable')
+        numbers = np.concatenate((numbers, others))
+        return some(events, order), numbers[order], _moved(joints, order)
 
 
-def _samples(slots: Sequence[_Slot], found: Sequence[Found]) -> Events:
+def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.intp]]:
+    """Return what the messages have at the slots, but for odd ones, which come beside it."""
+    counts = slots.counts[burst.topic]
+    message = np.repeat(np.arange(len(counts)), counts)
+    within = np.arange(len(message)) - np.repeat(np.cumsum(counts) - counts, counts)
+    slot = slots.begins[burst.topic[message]] + within
+    is_plain, number, stamp = slots.ways.walk(burst.data, burst.place[message], slot)
+    most_ahead = np.array([one.axis.max_future + ahead for one in slots.slots], np.int64)
+    found = _Found(
+        message=message,
+        slot=slot,
+        number=number,
+        stamp=stamp,
+        now=burst.now[message],
+        lost=burst.lost[message],
+        most_ahead=most_ahead[slot],
+    )
+    is_odd = counts == 0
+    is_odd[message[~is_plain]] = True
+    odd = np.flatnonzero(is_odd)
+    if len(odd):
+        kept = ~is_odd[message]
+        found = _Found(*(column[kept] for column in found))
+    return found, odd
+
+
+def _samples(found: _Found, slots: _Slots) -> Events:
     """Return the samples of what was found; what gives none is a REFUSAL without its reason."""
-    slot, number, stamp, now, lost = map(np.array, zip(*found))
-    inputs = [(one.source.source, *_line(one), one.most_ahead) for one in slots]
-    source, factor, shift, most_ahead = (np.array(column)[slot] for column in zip(*inputs))
+    _, slot, number, stamp, now, lost, most_ahead = found
     with np.errstate(invalid='ignore', over='ignore'):
-        value = number * factor + shift
+        value = number * slots.factor[slot] + slots.shift[slot]
     early = (now != 0) & (stamp - now > most_ahead)
     return blank(
-        len(found),
+        len(slot),
         kind=np.where(~np.isfinite(value) | (stamp < 0) | early, REFUSAL, SAMPLE),
-        source=source,
+        source=slots.source[slot],
         stamp=np.clip(np.where(stamp == 0, now, stamp), EARLIEST, LATEST),
         arrival=np.clip(np.where(now == 0, stamp, now), EARLIEST, LATEST),
         lost=lost,
@@ -160,27 +215,34 @@ def _samples(slots: Sequence[_Slot], found: Sequence[Found]) -> Events:
     )
 
 
-def _line(slot: _Slot) -> tuple[float, float]:
-    return slot.source.scaling.factor, slot.source.scaling.shift
-
-
-def _read_again(slots: Sequence[_Slot], found: Found) -> InputSample | Refusal:
+def _read_again(found: _Found, at: int, slots: _Slots) -> InputSample | Refusal:
     """Return what an input makes of a number that gives no sample."""
-    number, value, stamp, now, missing = found
-    lost, slot = None if missing == NOT_KNOWN else missing, slots[number]
-    return slot.source.sample(value, stamp, now=now, max_future=slot.most_ahead, lost=lost)
+    _, slot, value, stamp, now, missing, most_ahead = (column[at].item() for column in found)
+    lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot].source
+    return source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
 
 
-def _open(topic: Topic, reading: Reading, slots: list[_Slot]) -> range:
-    """Add a slot for each reader of a topic; none if its messages are read by themselves."""
-    begin, several = len(slots), topic.loss.publishers > 1
+def _record(event: InputSample | Refusal) -> Events:
+    record = Event()
+    fill(record, event)
+    return as_array(record)
+
+
+def _slots_of(topic: Topic, several: frozenset[InputName]) -> list[_Slot]:
+    """Return a slot for each reader of a topic; none if its messages are read by themselves."""
+    slots = []
     for reader, (axis, source) in enumerate(topic.readers):
         field = topic.field(reader) if topic.subscription.raw else None
-        if field is None or several or (axis.name, source.source) in reading.several:
-            del slots[begin:]
-            break
-        slots.append(_Slot(axis, source, field.find, axis.max_future + reading.ahead))
-    return range(begin, len(slots))
+        if field is None or topic.loss.publishers > 1 or (axis.name, source.source) in several:
+            return []
+        slots.append(_Slot(axis, source, field.layout))
+    return slots
+
+
+def _moved(joints: Mapping[int, OtherJoints], order: NDArray[np.intp]) -> dict[int, OtherJoints]:
+    """Return joints by the places at which their events stand in an order."""
+    places = np.argsort(order).tolist() if joints else ()
+    return {places[at]: named for at, named in joints.items()}
 
 
 def _order(events: Events) -> NDArray[np.intp]:

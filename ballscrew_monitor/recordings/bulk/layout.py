@@ -106,9 +106,7 @@ class Layout:
 
     def numbers(self, walked: NDArray[Any]) -> NDArray[np.float64]:
         """Return the number of each message that has one."""
-        kind = np.dtype(self._kind)
-        raw = np.ascontiguousarray(walked['bits']).astype('<u8').view(np.uint8).reshape(-1, 8)
-        return np.ascontiguousarray(raw[:, : kind.itemsize]).view(kind)[:, 0].astype(np.float64)
+        return numbers_of(walked['bits'], self._kind)
 
     @property
     def code(self) -> str:
@@ -176,6 +174,13 @@ class Layout:
             raise NoLayout
         for member in members.values():
             self._pass(member)
+
+
+def numbers_of(bits: NDArray[np.uint64], code: str) -> NDArray[np.float64]:
+    """Return the numbers that bits stand for by the code of their kind."""
+    kind = np.dtype(code)
+    raw = np.ascontiguousarray(bits).astype('<u8').view(np.uint8).reshape(-1, 8)
+    return np.ascontiguousarray(raw[:, : kind.itemsize]).view(kind)[:, 0].astype(np.float64)
 
 
 def _class(kind: str) -> MessageClass:

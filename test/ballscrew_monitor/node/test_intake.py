@@ -11,7 +11,7 @@ from ballscrew_monitor.core.conversions import nanoseconds, Scaling, SECOND
 from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
-from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
+from ballscrew_monitor.node.intake import Intake, LONGER, PAUSE, QUIET, STAY
 from ballscrew_monitor.node.topic import Topic
 from ballscrew_monitor.settings.qos import started_node
 import pytest
@@ -105,10 +105,10 @@ class Bench:
     def take(self, axis, event):
         self.taken.append(event)
 
-    def begin_anew(self, take):
+    def begin_anew(self, take, **options):
         """Let another intake hand its events to `take`, with a publisher of the speed."""
         self.intake.close()
-        self.intake = Intake(self.node, [self.axis], take)
+        self.intake = Intake(self.node, [self.axis], take, **options)
         self.until(lambda: self.matched()[Source.SPEED] == 1)
         self.drain_events()
 
@@ -151,18 +151,18 @@ def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
 
 def test_what_comes_while_the_topics_are_looked_at_keeps_its_order(bench, monkeypatch):
     """A load and then a speed, just after the topic of the load has been looked at."""
-    waiting, sent = Topic.waiting, []
+    taken, sent = Topic.taken, []
 
     def late(topic):
-        found = waiting(topic)
+        found = taken(topic)
         if topic.name != '/speed' or sent:
             return found
         for name in ('load', 'speed'):
             sent.append(name)
             bench.publish(name, len(sent))
-        return bench.until(lambda: waiting(topic), meanwhile=nothing)
+        return bench.until(lambda: taken(topic), meanwhile=nothing)
 
-    monkeypatch.setattr(Topic, 'waiting', late)
+    monkeypatch.setattr(Topic, 'taken', late)
     assert bench.intake.drain()
     assert [event.value for event in bench.taken] == [1.0, 2.0]
 
@@ -194,6 +194,41 @@ def test_what_a_full_queue_drops_is_counted(bench):
     lost = sum(event.lost for event in bench.taken)
     assert len(bench.taken) + lost == 1000
     assert lost > 0
+
+
+class AtOnce:
+    """An intake whose turns are judged compiled, and the values and losses that they hold."""
+
+    def __init__(self, bench):
+        self.values, self.losses, self.counted = [], [], 0
+        bench.begin_anew(None, compiled=self, take_many=self._take)
+
+    @property
+    def are_due(self):
+        return True
+
+    def count(self, events, now):
+        self.counted += events
+
+    def _take(self, turn):
+        self.values += turn.events['value'].tolist()
+        self.losses += turn.events['lost'].tolist()
+
+
+def test_turns_that_are_judged_compiled_hold_all_in_the_order_of_arrival(bench):
+    intake = AtOnce(bench)
+    for i in range(50):
+        bench.publish('speed', 2 * i)
+        bench.publish('load', 2 * i + 1)
+    bench.until(lambda: len(intake.values) == 100)
+    assert intake.values == list(range(100))
+    assert set(intake.losses) == {0}
+    assert intake.counted == 100
+    for i in range(100, 1100):
+        bench.publish('speed', i)
+    bench.until(lambda: intake.values[-1] == 1099.0)
+    assert len(intake.values) + sum(intake.losses) == 1100
+    assert sum(intake.losses) > 0
 
 
 @pytest.mark.parametrize('hours', [1, -1])
@@ -371,6 +406,18 @@ def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench
     assert len(looks) == pytest.approx((QUIET + STAY) / PAUSE, abs=4)
 
 
+def test_no_pause_lasts_until_after_a_timer_is_due(bench, monkeypatch):
+    """The pauses of a turn that is judged compiled are longer."""
+    watch, due = Watch(monkeypatch), 0.75 * LONGER * PAUSE
+    rest(bench.intake, monkeypatch)
+    monkeypatch.setattr(bench.intake, '_compiled', types.SimpleNamespace(are_due=True))
+    monkeypatch.setattr(bench.intake, '_time_to_timer', lambda: due)
+    monkeypatch.setattr(bench.intake, 'drain', lambda: True)
+    begin = watch.now
+    turns(bench.intake)
+    assert watch.now - begin == pytest.approx(due)
+
+
 def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkeypatch):
     Watch(monkeypatch)
     rest(bench.intake, monkeypatch)
@@ -382,6 +429,25 @@ def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkey
         counts.append(len(looks) - before)
     assert counts[0] > STAY / PAUSE / 2
     assert counts == [counts[0], 1, counts[0], 1]
+
+
+@pytest.mark.parametrize(('due', 'count'), [(False, 0), (True, 1)])
+def test_while_messages_flow_a_turn_judged_compiled_begins_with_a_pause_if_no_timer_is_due(
+    bench, monkeypatch, due, count
+):
+    watch, looks, left = Watch(monkeypatch), [], [STAY]
+    rest(bench.intake, monkeypatch)
+    monkeypatch.setattr(bench.intake, '_compiled', types.SimpleNamespace(are_due=True))
+    monkeypatch.setattr(bench.intake, '_time_to_timer', lambda: left[0])
+    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(watch.now) or True)
+    begin = watch.now
+    turns(bench.intake)
+    assert looks[0] == begin  # nothing flowed before
+    left[0] = 0.0 if due else STAY
+    for _ in range(2):  # the first one leaves the others their turn
+        before, begin = len(looks), watch.now
+        turns(bench.intake)
+        assert looks[before:].count(begin) == count
 
 
 def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatch):

@@ -22,7 +22,7 @@ from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, NEWS_INTERVAL
 from ballscrew_monitor.node.kept_axes import LOOK, PERIOD
 from ballscrew_monitor.node.node import BallscrewMonitor
-from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.node.topic import Arrival, RECEIVED
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
@@ -432,10 +432,12 @@ def hears(node):
     """Let the intake find two messages about x, which y reads too."""
     topic = node._intake.topics['/joint_states']
     message = JointState(name=['x_axis'], velocity=[FAST])
-    arrivals = [Arrival(1, message, number, topic) for number in (1, 2)]
+    taken = [(Arrival(1, message, number, topic), {RECEIVED: 1}) for number in (1, 2)]
     names = ('loss', 'sources', 'subscription', 'type_name')
     parts = {name: getattr(topic, name) for name in names}
-    node._intake.topics['/joint_states'] = SimpleNamespace(waiting=lambda: arrivals, **parts)
+    node._intake.topics['/joint_states'] = SimpleNamespace(
+        taken=lambda: taken, arrival=lambda arrival, info: arrival, **parts
+    )
     node._intake.drain()
 
 

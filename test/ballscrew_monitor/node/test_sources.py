@@ -30,6 +30,21 @@ def test_the_first_message_of_each_of_several_publishers_tells_nothing():
     assert counter.take(50) == 0
 
 
+@given(st.lists(st.lists(st.integers(0, 12), max_size=6), max_size=6), st.sampled_from([0, 1, 2]))
+def test_of_many_messages_at_once_the_same_is_lost_as_of_one_after_the_other(looks, publishers):
+    once, each = LossCounter(), LossCounter()
+    for counter in (once, each):
+        counter.match(publishers)
+    for numbers in looks:
+        assert once.take_many(numbers) == list(map(each.take, numbers))
+
+
+def test_a_gap_between_two_looks_is_counted():
+    counter = LossCounter()
+    assert counter.take_many([4, 5]) == [0, 0]
+    assert counter.take_many([8, 9, 11]) == [2, 0, 1]
+
+
 @given(st.lists(st.booleans(), min_size=1))
 def test_every_message_left_out_between_two_that_arrive_is_counted(arrives):
     counter = LossCounter()

@@ -13,6 +13,7 @@ from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.monitor import fill
 from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL, Row
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.node.burst import Burst
 from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.node import BallscrewMonitor
@@ -88,7 +89,7 @@ class Inputs:
 
     def turn(self, heard, reading):
         reader = TurnReader(self.axes, lambda one: self.one_by_one(one, reading))
-        return reader.turn(heard, reading)
+        return reader.turn(Burst.of(heard), reading)
 
 
 def stamped(message, stamp):
@@ -191,9 +192,8 @@ def test_each_axis_has_its_events_and_the_joints_that_these_name():
 
 def test_nothing_comes_of_messages_that_the_program_fails_at():
     inputs = Inputs(publishers=2)
-    turn = TurnReader(inputs.axes, lambda one: []).turn(
-        [inputs.heard('/x/load', load(1.0))], Reading()
-    )
+    burst = Burst.of([inputs.heard('/x/load', load(1.0))])
+    turn = TurnReader(inputs.axes, lambda one: []).turn(burst, Reading())
     assert len(turn.events) == 0
     assert turn.by_axis() == []
 
