@@ -12,7 +12,7 @@ import numpy as np
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
-from surrogate.identify.fit import Identification, ParameterEstimate
+from surrogate.identify.fit import Identification
 from surrogate.identify.model import ContactModel, thickened
 from surrogate.identify.onset import calibrated_band, onset_speeds
 from surrogate.parameters import Lubricant, Screw
@@ -212,21 +212,20 @@ def identified_oil(
 
 
 def _provenance(run: NoLoadRun, contacts: ContactModel, fit: Identification) -> str:
-    speed = np.abs(run.speed) / RPM
+    speed, estimates = np.abs(run.speed) / RPM, []
+    for estimate in fit.estimates:
+        unit = f' {UNITS[estimate.name]}' if UNITS[estimate.name] != '-' else ''
+        interval = f'95 % {estimate.low:.5g} to {estimate.high:.5g}'
+        estimates.append(
+            f'{estimate.name} {estimate.value:.5g}{unit} ({estimate.reason or interval})'
+        )
     return (
         f'{PROVENANCE} {run.source}: {len(speed)} points from '
         f'{digits(speed.min(), 4)} to {digits(speed.max(), 4)} rev/min, tier {contacts.tier}, '
         f'oil {contacts.lubricant.name} at '
         f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {fit.rms:.3g} N m rms. '
-        + '; '.join(_sentence(estimate) for estimate in fit.estimates)
-        + '.'
+        f'{"; ".join(estimates)}.'
     )
-
-
-def _sentence(estimate: ParameterEstimate) -> str:
-    unit = f' {UNITS[estimate.name]}' if UNITS[estimate.name] != '-' else ''
-    interval = f'95 % {estimate.low:.5g} to {estimate.high:.5g}'
-    return f'{estimate.name} {estimate.value:.5g}{unit} ({estimate.reason or interval})'
 
 
 def page(record: Mapping[str, Any]) -> str:

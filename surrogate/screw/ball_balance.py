@@ -211,7 +211,10 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
     unknowns, friction = start.unknowns, wrenches(problem, start.unknowns)
     for steps in range(start.steps + 1, start.steps + 1 + limit):
         imbalance, jacobian = linearise(problem, unknowns, friction)
-        if not _regular(jacobian):
+        rows = np.abs(jacobian).max(axis=1, keepdims=True)
+        finite = np.isfinite(jacobian).all() and rows.min() > 0
+        if not (finite and np.linalg.cond(jacobian / rows) < LARGEST_CONDITION):
+            # Whatever the size of their rows, the equations leave an unknown open.
             return _Iterate(unknowns, BalanceStatus.UNDETERMINED, steps)
         step = np.asarray(np.linalg.solve(jacobian, -imbalance), dtype=np.float64)
         if np.linalg.norm(step) <= tolerance:
@@ -251,14 +254,6 @@ def _legal(problem: BallProblem, unknowns: Array) -> bool:
     angles = np.array(problem.angles(values))
     pressed = min(problem.normal_forces(values)[:2]) > 0
     return bool(pressed and angles.min() > 0 and angles.max() < 0.5 * math.pi)
-
-
-def _regular(jacobian: Array) -> bool:
-    """Return True if the equations decide every unknown, whatever the size of their rows."""
-    rows = np.abs(jacobian).max(axis=1, keepdims=True)
-    if not (np.isfinite(jacobian).all() and rows.min() > 0):
-        return False
-    return bool(np.linalg.cond(jacobian / rows) < LARGEST_CONDITION)
 
 
 def _check(

@@ -13,7 +13,6 @@ import math
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import node_strengths, NodeStrengths
 from surrogate.files import InputError
@@ -155,23 +154,20 @@ def solved_traction(
     """
     if not solution.converged:
         raise InputError(f'no traction without a solved contact: {solution.status.value}')
-    _check_floor(slip_floor)
+    if not (math.isfinite(slip_floor) and slip_floor > 0):
+        raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is more than 0')
     nodes = node_strengths(
         solution, asperity_friction=asperity_friction, asperity_share=asperity_share
     )
     # The weaker a node, the later it saturates: its share is largest at a slip above any.
     slip = LARGEST_SLIP * solution.condition.entrainment_speed
-    used = _strongest(nodes.boundary + nodes.sheared(slip), neglected)
+    friction = nodes.boundary + nodes.sheared(slip)
+    rising = np.sort(friction, axis=None)
+    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
+    used = (friction > 0) & (friction >= rising[weak])
     return SolvedTraction(
         nodes=nodes.taken(used), load=solution.condition.load, slip_floor=slip_floor
     )
-
-
-def _strongest(friction: Array, neglected: float) -> NDArray[np.bool_]:
-    """Return the places that bear all but a share [-] of the friction."""
-    rising = np.sort(friction, axis=None)
-    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
-    return np.asarray((friction > 0) & (friction >= rising[weak]))
 
 
 def integrate_traction(
@@ -207,8 +203,3 @@ def integrate_traction(
     )
     by_load = (values + traction.growth * by_size) / load
     return Wrench(values=values, by_motion=by_motion, by_load=by_load, power=power)
-
-
-def _check_floor(floor: float) -> None:
-    if not (math.isfinite(floor) and floor > 0):
-        raise InputError(f'slip_floor is {floor!r} m/s, allowed is more than 0')
