@@ -88,15 +88,6 @@ class Identification:
         return next((estimate for estimate in self.estimates if estimate.name == name), None)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Fit:
-    """Values, whether found, robust spread in standard deviations [-] (0: least squares)."""
-
-    values: Array
-    converged: bool
-    spread: float
-
-
 def identify(
     screw: Screw,
     run: NoLoadRun,
@@ -119,12 +110,16 @@ def identify(
     if 'onset_factor' in fitted:
         return _identify_onset(problem, sigma)
     held = problem.without_effect(problem.start)
-    fit = _fit(problem, problem.start, held, sigma)
+    values, converged = _fit(problem, problem.start, held, sigma)
+    weighted = 0.0
     for _ in range(ROBUST_ROUNDS if loss == 'soft_l1' else 0):
         # The first spread still has the points in it that are far off.
-        spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(fit.values)) / sigma))
-        fit = _fit(problem, fit.values, held, sigma, spread) if spread > 0 else fit
-    return _result(problem, fit, held, sigma)
+        spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(values)) / sigma))
+        if spread > 0:
+            weighted = spread
+            values, converged = _fit(problem, values, held, sigma, weighted)
+    result = _result(problem, values, held, sigma, weighted)
+    return replace(result, converged=converged)
 
 
 def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
@@ -137,13 +132,13 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         return start
 
     def cost(factor: float) -> float:
-        values = _fit(problem, at(factor), {'onset_factor': ''}, sigma).values
+        values, _ = _fit(problem, at(factor), {'onset_factor': ''}, sigma)
         return float(np.sum((problem.residual(values) / sigma) ** 2))
 
     def fitted(start: Array, held: dict[str, str]) -> Identification:
         held = problem.without_effect(start) | held
-        fit = _fit(problem, start, held, sigma)
-        return _result(problem, fit, held, sigma)
+        values, converged = _fit(problem, start, held, sigma)
+        return replace(_result(problem, values, held, sigma), converged=converged)
 
     def without_onset(factor: float, reason: str) -> Identification:
         kept = 'not told without the onset: kept as in the datasheet'
@@ -179,8 +174,14 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
 
 def _fit(
     problem: DragProblem, start: Array, held: Mapping[str, str], sigma: Array, spread: float = 0.0
-) -> _Fit:
-    """Minimise over the parameters that are not held; residuals over `sigma` [N m]."""
+) -> tuple[Array, bool]:
+    """
+    Minimise over the parameters that are not held; residuals over `sigma` [N m].
+
+    With a robust `spread` in standard deviations [-], 0 for least squares. Returns the values,
+    and whether they were found.
+
+    """
     free = np.array([name not in held for name in problem.names])
     scale = problem.scale[free]
 
@@ -202,14 +203,18 @@ def _fit(
         ftol=TOLERANCE,
         gtol=TOLERANCE,
     )
-    return _Fit(values=values(minimum.x), converged=bool(minimum.success), spread=spread)
+    return values(minimum.x), bool(minimum.success)
 
 
 def _result(
-    problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array
+    problem: DragProblem,
+    values: Array,
+    held: Mapping[str, str],
+    sigma: Array,
+    weighted: float = 0.0,
 ) -> Identification:
     """Return the fit with how sure it is; a parameter at a bound counts as known."""
-    run, values, names = problem.run, fit.values, problem.names
+    run, names = problem.run, problem.names
     residual, jacobian = problem.residual(values), problem.jacobian(values)
     reasons = dict(held) | problem.at_bounds(values)
     free = [place for place, name in enumerate(names) if name not in reasons]
@@ -217,7 +222,7 @@ def _result(
     freedom = len(sigma) - len(free)
     reasons |= undetermined(tuple(names[place] for place in free), scaled)
     spread = np.zeros((len(names), len(names)))
-    spread[np.ix_(free, free)], variance = covariance(scaled, residual / sigma, fit.spread)
+    spread[np.ix_(free, free)], variance = covariance(scaled, residual / sigma, weighted)
     known = [place for place, name in enumerate(names) if name not in reasons]
     width = student_factor(freedom)
     curve = np.einsum('pi,ij,pj->p', jacobian, spread, jacobian)
@@ -233,7 +238,7 @@ def _result(
     before = problem.torque(problem.start)
     chi_square = float(np.sum((residual / sigma) ** 2)) / freedom
     return Identification(
-        converged=fit.converged,
+        converged=True,
         estimates=tuple(estimates),
         correlated=tuple(names[place] for place in known),
         correlation=correlation(spread[np.ix_(known, known)]),

@@ -13,6 +13,7 @@ import math
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import node_strengths, NodeStrengths
 from surrogate.files import InputError
@@ -161,13 +162,17 @@ def solved_traction(
     )
     # The weaker a node, the later it saturates: its share is largest at a slip above any.
     slip = LARGEST_SLIP * solution.condition.entrainment_speed
-    friction = nodes.boundary + nodes.sheared(slip)
-    rising = np.sort(friction, axis=None)
-    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
-    used = (friction > 0) & (friction >= rising[weak])
+    used = _strongest(nodes.boundary + nodes.sheared(slip), neglected)
     return SolvedTraction(
         nodes=nodes.taken(used), load=solution.condition.load, slip_floor=slip_floor
     )
+
+
+def _strongest(friction: Array, neglected: float) -> NDArray[np.bool_]:
+    """Return the places that bear all but a share [-] of the friction."""
+    rising = np.sort(friction, axis=None)
+    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
+    return np.asarray((friction > 0) & (friction >= rising[weak]))
 
 
 def integrate_traction(

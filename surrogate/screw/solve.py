@@ -139,20 +139,7 @@ def rebalance_screw(
 
     """
     screw = opened.sheet
-    nuts = _nut_loads(screw, point)
-    wanted = [float(normal_force(screw, nut.force)) for nut in nuts]
-    unsolved = any(
-        wanted[place // len(SIDES)] > 0 and contact.solved is None
-        for place, contact in enumerate(solution.contacts)
-        if screw.nut != 'oversize' or place < len(SIDES)
-    )
-    apart = max(abs(new - old) for new, old in zip(wanted, solution.normal_forces, strict=True))
-    if unsolved or apart > SAME_FORCE * max(wanted):
-        raise InputError(
-            f'load is {point.load:g} N, with {wanted[0]:.4g} and {wanted[1]:.4g} N a ball, '
-            f'allowed is that solved, with {solution.normal_forces[0]:.4g} and '
-            f'{solution.normal_forces[1]:.4g} N'
-        )
+    _check_same_load(screw, point, solution)
     sides = make_contacts(opened, lubricant, point, settings or ScrewSettings())
     pairs = [
         [
@@ -161,6 +148,7 @@ def rebalance_screw(
         ]
         for contacts in (solution.contacts[:2], solution.contacts[2:])
     ]
+    nuts = _nut_loads(screw, point)
     if screw.nut == 'oversize':
         return _combine(opened, point, make_oversize(screw, point, nuts, pairs))
     solved = [
@@ -178,6 +166,24 @@ def _without_floating(
     if solved[1].failure and relieved.force < FLOATING_SHARE * loaded.force:
         return [solved[0], make_nut(screw, point, replace(relieved, force=0.0), ())]
     return list(solved)
+
+
+def _check_same_load(screw: Screw, point: OperatingPoint, solution: ScrewSolution) -> None:
+    """Raise InputError when the contacts of a solution belong to other normal forces."""
+    wanted = [float(normal_force(screw, nut.force)) for nut in _nut_loads(screw, point)]
+    unsolved = any(
+        force > 0 and contact.solved is None
+        for place, contact in enumerate(solution.contacts)
+        for force in [wanted[place // len(SIDES)]]
+        if screw.nut != 'oversize' or place < len(SIDES)
+    )
+    apart = max(abs(new - old) for new, old in zip(wanted, solution.normal_forces, strict=True))
+    if unsolved or apart > SAME_FORCE * max(wanted):
+        raise InputError(
+            f'load is {point.load:g} N, with {wanted[0]:.4g} and {wanted[1]:.4g} N a ball, '
+            f'allowed is that solved, with {solution.normal_forces[0]:.4g} and '
+            f'{solution.normal_forces[1]:.4g} N'
+        )
 
 
 def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
