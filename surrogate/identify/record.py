@@ -45,7 +45,10 @@ def identification_record(
     screw: Screw, run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> dict[str, Any]:
     """Return an identification as plain numbers, SI units, NaN with a reason where unknown."""
-    speed, share = np.abs(run.speed), _contact_share(run, fit)
+    speed = np.abs(run.speed)
+    parasitic = fit.value('parasitic_torque') + fit.value('parasitic_torque_rate') * speed
+    total = fit.contacts + parasitic
+    share = np.divide(fit.contacts, total, out=np.ones_like(total), where=total > 0)
     return {
         'tier': contacts.tier,
         'status': _status(fit),
@@ -77,7 +80,7 @@ def identification_record(
         'residual_rms_before_Nm': fit.rms_before,
         'degrees_of_freedom': fit.degrees_of_freedom,
         'reduced_chi_square': fit.reduced_chi_square,
-        'contact_share_range': list(share),
+        'contact_share_range': [float(share.min()), float(share.max())],
         'catalogue_drag_torque_Nm': drag_torque_catalogue(
             screw.preload, screw.lead, helix_angle(screw)
         ),
@@ -108,16 +111,6 @@ def _onset_record(
         'reason': onset.reason,
         'refused': fit.onset_refused,
     }
-
-
-def _contact_share(run: NoLoadRun, fit: Identification) -> tuple[float, float]:
-    """Return the least and largest share of the contacts in the friction torque modelled [-]."""
-    parasitic = fit.value('parasitic_torque') + fit.value('parasitic_torque_rate') * np.abs(
-        run.speed
-    )
-    total = fit.contacts + parasitic
-    share = np.divide(fit.contacts, total, out=np.ones_like(total), where=total > 0)
-    return float(share.min()), float(share.max())
 
 
 def _warnings(
