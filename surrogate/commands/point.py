@@ -98,7 +98,6 @@ def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
 
 
 def _sheets(screw: str) -> tuple[Screw, Lubricant]:
-    """Return the sheet of a screw with the default oil, or both sheets of a surface."""
     if not screw.endswith('.npz'):
         return load_screw(screw), load_lubricant('iso_vg_68')
     return screw_and_oil(read(screw).header['inputs'])

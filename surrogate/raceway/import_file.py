@@ -130,7 +130,6 @@ def _number(word: str, path: Path, line: int) -> float:
 
 
 def _points(table: Array, columns: dict[str, float], path: Path) -> tuple[Array, float, float]:
-    """Arrange points with their places on a grid."""
     if table.shape[1] != len(columns):
         raise InputError(
             f'{path}: a line has {table.shape[1]} numbers, the first line names {len(columns)}'

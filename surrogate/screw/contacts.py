@@ -212,14 +212,12 @@ def with_oil_of(contact: RollingContact, solved: SolvedContact) -> SolvedContact
 def _asperities(
     contact: RollingContact, law: AsperityLaw, condition: Condition
 ) -> AsperityContact:
-    """Return what asperities do on the raceway of a contact."""
     return law.contact(contact.side, contact.geometry, condition, contact.oil, contact.film_floor)
 
 
 def _standing(
     contact: RollingContact, smooth: ContactSolution, start: ContactSolution | None
 ) -> SolvedContact:
-    """Return a contact solved with its roughness, which stands still."""
     assert contact.raceway is not None
     wave = contact.raceway.shortest_wavelength
     rough = _across(contact.settings, smooth.semi_axis_y, wave)

@@ -199,7 +199,6 @@ def most_wear(contacts: list[dict[str, Any]]) -> dict[str, float]:
 def _comparators(
     opened: Contacts, point: OperatingPoint, loaded_screw: PointContact[Array]
 ) -> dict[str, Any]:
-    """Return what the classical formulas say of the same point."""
     screw, load = opened.sheet, point.opposing_load
     angle = helix_angle(screw)
     forces = [float(force) for force in nut_forces(load, screw.preload)]

@@ -210,7 +210,6 @@ def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend
 
 
 def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
-    """Return the courses under preload over speed."""
     contact, rolling = curves.contact_speeds(rows), screw_speeds(rows, 'rcs')
     note = f' (one contact, {counted(contact.draws)})'
     yield Trend(
@@ -237,7 +236,6 @@ def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
 def _efficiency(
     screw: Screw, rows: list[StudyRow], name: str, along: curves.Along, **wanted: float
 ) -> Trend:
-    """Return the course of the efficiency over speed or load."""
     reported = RISES if along == 'rpm' else RISES_THEN_FALLS
     readings = []
     for case in (tasks.STANDING, tasks.OURS):

@@ -224,7 +224,6 @@ def solve_patch(
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> Fields:
-    """Return all nodes, those of the centre line, or nothing."""
     if not kind:
         return {}
     middle = int(np.argmin(np.abs(solution.y)))

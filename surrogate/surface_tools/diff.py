@@ -238,6 +238,5 @@ def diff_page(record: Mapping[str, Any], sentences: list[str]) -> str:
 
 
 def _short(value: Any) -> str:
-    """Return a value of a header as text, cut where it would fill lines."""
     text = str(value)
     return text if len(text) <= LONGEST else f'{text[:LONGEST]} ...'

@@ -134,7 +134,6 @@ def _map(
 
 
 def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
-    """Draw the lines of some limits, where the values reach them; several are labelled."""
     if _reaches(values, levels):
         lines = axes.contour(part.speed, part.load, values, levels=levels, **LIMIT)
         if len(levels) > 1:
