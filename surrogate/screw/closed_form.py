@@ -124,7 +124,9 @@ def _solve_contact(
         )
         slip['spin'] = abs(float(spin))
     thickness = np.nan_to_num(film)
-    sliding = sliding_friction(screw, side, ellipse, thickness, share, oil, speed, **slip)
+    torque, coefficient = sliding_friction(
+        screw, side, ellipse, thickness, share, oil, speed, **slip
+    )
     rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return PointContact(
         nut=nut,
@@ -139,9 +141,9 @@ def _solve_contact(
         film_ratio=ratio,
         rcs=rcs,
         asperity_share=share,
-        friction_coefficient=sliding.friction_coefficient,
+        friction_coefficient=coefficient,
         rolling_force=rolling,
-        sliding_torque=balls * sliding.torque,
+        sliding_torque=balls * torque,
         rolling_torque=2 * balls * rolling * arm,
     )
 
