@@ -420,7 +420,19 @@ class Lubricant(Checked):
                 f'{self.kinematic_viscosity_100 * 1e6:g} mm2/s, allowed is less than '
                 f'kinematic_viscosity_40_mm2_s ({self.kinematic_viscosity_40 * 1e6:g} mm2/s)'
             )
-        self._check_viscosity()
+        anchors = {
+            40 + ZERO_CELSIUS: self.kinematic_viscosity_40,
+            100 + ZERO_CELSIUS: self.kinematic_viscosity_100,
+        }
+        kinematic = anchors.get(self.reference_temperature)
+        expected = self.viscosity if kinematic is None else kinematic * self.density
+        if max(self.viscosity / expected, expected / self.viscosity) > VISCOSITY_MISMATCH:
+            # The commonest slip, mPa s typed as Pa s, where the sheet itself shows it.
+            raise InputError(
+                f'lubricant: viscosity_Pa_s is {self.viscosity:g} Pa s, allowed is '
+                f'{expected / VISCOSITY_MISMATCH:.3g} to {expected * VISCOSITY_MISMATCH:.3g} Pa s '
+                '(kinematic viscosity times density of this sheet, within a factor of two)'
+            )
         check_likely(self, 'lubricant', 'film_floor_low', 'film_floor', 'film_floor_high')
         if not (
             self.minimum_temperature <= self.reference_temperature <= self.maximum_temperature
@@ -435,24 +447,6 @@ class Lubricant(Checked):
     def stated(self) -> dict[str, Any]:
         """Return the values by name; an option that is absent leaves no trace."""
         return {name: value for name, value in asdict(self).items() if value is not None}
-
-    def _check_viscosity(self) -> None:
-        """Refuse the commonest slip, mPa s typed as Pa s, where the sheet itself shows it."""
-        anchors = {
-            40 + ZERO_CELSIUS: self.kinematic_viscosity_40,
-            100 + ZERO_CELSIUS: self.kinematic_viscosity_100,
-        }
-        kinematic = anchors.get(self.reference_temperature)
-        if kinematic is None:
-            return
-        expected = kinematic * self.density
-        factor = max(self.viscosity / expected, expected / self.viscosity)
-        if factor > VISCOSITY_MISMATCH:
-            raise InputError(
-                f'lubricant: viscosity_Pa_s is {self.viscosity:g} Pa s, allowed is '
-                f'{expected / VISCOSITY_MISMATCH:.3g} to {expected * VISCOSITY_MISMATCH:.3g} Pa s '
-                '(kinematic viscosity times density of this sheet, within a factor of two)'
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -49,6 +49,14 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
         warm.value - 25 * DENSITY_SLOPE, f'from {warm.value:g} at 15 degC, {warm.note}'
     )
     alpha = float(pressure_viscosity_gold_2001(base.pressure_viscosity, MICRO * kinematic))
+    if given.viscosity_100 is None:
+        index = stated(given.viscosity_index, base.index)
+        hot = derived(
+            viscosity_at_100_astm_d2270(kinematic, index.value),
+            f'ASTM D2270 for the index {index.value:g}, {index.note}',
+        )
+    else:
+        hot = Noted(given.viscosity_100, 'given')
     return noted_sheet(
         Lubricant,
         {
@@ -61,7 +69,7 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
             'density_slope': typical(DENSITY_SLOPE, '0.6 to 0.7'),
             'eyring_stress': typical(5e6, '2 to 10'),
             'kinematic_viscosity_40': Noted(kinematic, 'given'),
-            'kinematic_viscosity_100': _hot(given, base),
+            'kinematic_viscosity_100': hot,
             'minimum_temperature': typical(ZERO_CELSIUS, '-20 to 10'),
             'maximum_temperature': typical(100 + ZERO_CELSIUS, '80 to 120'),
             'thermal_conductivity': typical(0.14, '0.12 to 0.16'),
@@ -71,15 +79,6 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
             'film_factor': _film_factor(given),
         },
     )
-
-
-def _hot(given: CatalogueOil, base: Base) -> Noted:
-    """Return the viscosity at 100 degC [m2/s]."""
-    if given.viscosity_100 is not None:
-        return Noted(given.viscosity_100, 'given')
-    index = stated(given.viscosity_index, base.index)
-    hot = viscosity_at_100_astm_d2270(given.iso_vg, index.value)
-    return derived(hot, f'ASTM D2270 for the index {index.value:g}, {index.note}')
 
 
 def _film_factor(given: CatalogueOil) -> Noted:

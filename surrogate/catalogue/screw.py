@@ -62,12 +62,15 @@ def screw_of(given: CatalogueScrew) -> tuple[Screw, dict[str, str]]:
         words = '2.83 preloads, which unload one pair of flanks'
     if not screw.preload:
         words = '2.83 % of C0, without preload: state the largest axial load'
-    load, drag = derived(working_load(screw), words), _drag(screw)
-    changes = {name: noted.value for name, noted in drag.items()}
-    notes |= {f'{name}_Nm': noted.note for name, noted in drag.items()}
-    return replace(screw, working_load=load.value, **changes), notes | {
-        'working_load_N': load.note
-    }
+    load = derived(working_load(screw), words)
+    changes, notes['working_load_N'] = {'working_load': load.value}, load.note
+    texts = 'lowest likely', 'of the drag torque of JIS B 1192', 'highest likely'
+    drags = zip(Screw.LIKELY, DRAG_SHARES, typical_drag(screw), texts, strict=True)
+    for name, share, drag, text in drags if screw.preload else ():
+        # Without preload no typical drag is known.
+        changes[name] = float(f'{drag:.3g}')
+        notes[f'{name}_Nm'] = f'typical ({share:g} {text})'
+    return replace(screw, **changes), notes
 
 
 def typical_drag(screw: Screw) -> tuple[float, float, float]:
@@ -77,22 +80,16 @@ def typical_drag(screw: Screw) -> tuple[float, float, float]:
     return low, middle, high
 
 
-def _drag(screw: Screw) -> dict[str, Noted]:
-    """Return the typical drag of a preloaded nut with its range; without preload none is known."""
-    if not screw.preload:
-        return {}
-    words = 'lowest likely', 'of the drag torque of JIS B 1192', 'highest likely'
-    return {
-        name: Noted(float(f'{each:.3g}'), f'typical ({share:g} {text})')
-        for name, share, each, text in zip(
-            Screw.LIKELY, DRAG_SHARES, typical_drag(screw), words, strict=True
-        )
-    }
-
-
 def _values(given: CatalogueScrew) -> dict[str, Any]:
     """Return all values but the static rating and the working load."""
-    diameter, ball = _diameters(given)
+    nominal = given.nominal_diameter or given.pitch_diameter or math.nan
+    usual = min(BALL_OVER_LEAD * given.lead, BALL_OVER_DIAMETER * nominal)
+    ball = stated(given.ball_diameter, derived(usual, '0.635 leads, 0.2 diameters at most'))
+    if given.pitch_diameter is None:
+        circle = nominal + OVER_NOMINAL * ball.value
+        diameter = derived(circle, 'half of nominal and 0.2 (0 to 0.3) ball diameters')
+    else:
+        diameter = Noted(given.pitch_diameter, 'given, as a diameter')
     nominal = MILLI * (given.nominal_diameter or diameter.value)
     side, process = typical(0.54, '0.515 to 0.555'), process_of(given)
     rating = given.dynamic_rating
@@ -117,17 +114,6 @@ def _values(given: CatalogueScrew) -> dict[str, Any]:
         'ball': STEEL,
         'roughness': raceway_of(given),
     }
-
-
-def _diameters(given: CatalogueScrew) -> tuple[Noted, Noted]:
-    """Return the diameter of the ball circle and that of a ball."""
-    nominal = given.nominal_diameter or given.pitch_diameter or math.nan
-    usual = min(BALL_OVER_LEAD * given.lead, BALL_OVER_DIAMETER * nominal)
-    ball = stated(given.ball_diameter, derived(usual, '0.635 leads, 0.2 diameters at most'))
-    if given.pitch_diameter is not None:
-        return Noted(given.pitch_diameter, 'given, as a diameter'), ball
-    circle = nominal + OVER_NOMINAL * ball.value
-    return derived(circle, 'half of nominal and 0.2 (0 to 0.3) ball diameters'), ball
 
 
 def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:

@@ -87,7 +87,6 @@ class CatalogueScrew(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check ranges, that enough is given, and that turns and diameters fit."""
         Checked.__post_init__(self)
         _check_needed(self, self.NEEDED[:-1] if self.nut == 'plain' else self.NEEDED)
         if self.nut == 'offset' and self.balls is None and (self.turns or 0.0) < 2:
@@ -136,7 +135,6 @@ class CatalogueOil(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, and that enough is given."""
         Checked.__post_init__(self)
         _check_needed(self, self.NEEDED)
 

@@ -3,14 +3,11 @@
 """The subcommand `contact`: solve one contact from a case file."""
 
 import argparse
-from importlib import import_module
 import logging
 from pathlib import Path
-import sys
 from typing import Any
 
-from surrogate.commands.output import add_json, show
-from surrogate.files import InputError
+from surrogate.commands.output import add_json, draw_into, show
 from surrogate.tasks.progress import Progress
 
 
@@ -41,7 +38,9 @@ def _standing(case: Any, args: argparse.Namespace) -> int:
     record = contact_record(case, solution)
     show(record, lambda record: contact_page(record, case, solution, surface), json=args.json)
     if args.plot:
-        _plot(args.plot, 'figures', 'draw_contact', solution, surface)
+        from surrogate.contact.figures import draw_contact
+
+        draw_into(args.plot, lambda folder: draw_contact(folder, solution, surface))
     return 0 if solution.converged else 1
 
 
@@ -64,16 +63,7 @@ def _rolling(case: Any, args: argparse.Namespace) -> int:
     record = rolling_record(case, solution, surface)
     show(record, lambda record: rolling_page(record, case, solution), json=args.json)
     if args.plot:
-        _plot(args.plot, 'rolling_figure', 'draw_rolling', solution)
+        from surrogate.contact.rolling_figure import draw_rolling
+
+        draw_into(args.plot, lambda folder: draw_rolling(folder, solution))
     return 0 if solution.converged else 1
-
-
-def _plot(folder: Path, module: str, function: str, *results: Any) -> None:
-    """Draw the pictures of a contact; only this needs matplotlib."""
-    draw = getattr(import_module(f'surrogate.contact.{module}'), function)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for path in draw(folder, *results):
-            print(path, file=sys.stderr)
-    except OSError as error:
-        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

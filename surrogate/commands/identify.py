@@ -9,7 +9,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from surrogate.commands.output import add_json, show
+from surrogate.commands.output import add_json, draw_into, show
 from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
@@ -130,8 +130,12 @@ def _identify(args: argparse.Namespace) -> int:
     if args.out and usable:
         _write(args.out, screw, lubricant, run, contacts, result)
     if args.plot:
-        title = f'{screw.name}, {lubricant.name}, tier {contacts.tier}'
-        _plot(args.plot, run, result, title, record['onset'])
+        from surrogate.identify.figures import draw_identification
+
+        title, onset = f'{screw.name}, {lubricant.name}, tier {contacts.tier}', record['onset']
+        draw_into(
+            args.plot, lambda folder: [draw_identification(folder, run, result, title, onset)]
+        )
     return 0 if usable else 1
 
 
@@ -236,14 +240,3 @@ def _write(
         oil = _oil_sheet(out)
         write_sheet(oil, identified_oil(lubricant, run, contacts, result))
         print(oil, file=sys.stderr)
-
-
-def _plot(folder: Path, run: Any, result: Any, title: str, onset: Any) -> None:
-    """Draw the picture; only this needs matplotlib."""
-    from surrogate.identify.figures import draw_identification
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        print(draw_identification(folder, run, result, title, onset), file=sys.stderr)
-    except OSError as error:
-        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -3,7 +3,6 @@
 """The subcommands `screw new` and `oil new`: a sheet out of a catalogue, by flags or questions."""
 
 import argparse
-from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 import shlex
@@ -36,12 +35,26 @@ def add_new_commands(subparsers: Any) -> None:
 def _new(args: argparse.Namespace) -> int:
     from surrogate.datasheet_writer import write_sheet
 
-    specs = fields(SHEETS[args.sheet][0])
-    texts = {spec: getattr(args, key_of(spec)) for spec in specs}
+    words = SHEETS[args.sheet][0]
+    texts = {spec: getattr(args, key_of(spec)) for spec in fields(words)}
     if not any(texts.values()) and sys.stdin.isatty():
-        texts = {spec: _answer(spec) for spec in specs}
+        texts = {spec: _answer(spec) for spec in fields(words)}
     texts = {spec: text for spec, text in texts.items() if text}
-    sheet, notes = _complete(args.sheet, texts)
+    content = {key_of(spec): _value(spec, text) for spec, text in texts.items()}
+    given: Any = sheet_of(words, content, f'{args.sheet} new')
+    sheet: Any
+    if args.sheet == 'oil':
+        from surrogate.catalogue.oil import oil_of
+
+        sheet, notes = oil_of(given)
+    else:
+        from surrogate.catalogue.raceways import typical_roughness
+        from surrogate.catalogue.screw import equal_halves, heavy_preload, screw_of
+        from surrogate.formulas.plausibility import doubts
+
+        sheet, notes = screw_of(given)
+        preload = heavy_preload(sheet)
+        tell([*doubts(sheet), *preload, *equal_halves(given), *typical_roughness(given)])
     out = args.out or Path(f'{sheet.name}.yaml')
     if out.exists() and not args.force:
         raise InputError(f'--out: {out} is there already, allowed is another file, or --force')
@@ -68,21 +81,3 @@ def _value(spec: Any, text: str) -> Any:
         return int(text) if spec.metadata.get('whole') else float(text)
     except ValueError:
         return text
-
-
-def _complete(name: str, texts: Mapping[Any, str]) -> tuple[Any, dict[str, str]]:
-    """Return the sheet and its notes; tells what is unusual."""
-    content = {key_of(spec): _value(spec, text) for spec, text in texts.items()}
-    given: Any = sheet_of(SHEETS[name][0], content, f'{name} new')
-    if name == 'oil':
-        from surrogate.catalogue.oil import oil_of
-
-        return oil_of(given)
-    from surrogate.catalogue.raceways import typical_roughness
-    from surrogate.catalogue.screw import equal_halves, heavy_preload, screw_of
-    from surrogate.formulas.plausibility import doubts
-
-    screw, notes = screw_of(given)
-    preload = heavy_preload(screw)
-    tell([*doubts(screw), *preload, *equal_halves(given), *typical_roughness(given)])
-    return screw, notes

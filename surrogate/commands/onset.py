@@ -6,13 +6,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from surrogate.commands.output import add_json, show
+from surrogate.commands.output import add_json, draw_into, show
 from surrogate.commands.point import (
     add_inputs,
     add_temperature,
     load_inputs,
     oil_temperature,
-    picture,
     prepare,
 )
 
@@ -46,5 +45,5 @@ def _onset(args: argparse.Namespace) -> int:
     if args.plot:
         from surrogate.screw.figures import draw_onset
 
-        picture(args.plot, lambda folder: draw_onset(folder, screw, lubricant, record))
+        draw_into(args.plot, lambda folder: [draw_onset(folder, screw, lubricant, record)])
     return 0

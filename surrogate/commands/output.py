@@ -4,10 +4,11 @@
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 import sys
 from typing import Any, TypeVar
 
-from surrogate.files import json_text, printable
+from surrogate.files import InputError, json_text, printable
 
 Record = TypeVar('Record', bound=Mapping[str, Any])
 
@@ -26,3 +27,13 @@ def tell(sentences: Iterable[str]) -> None:
     """Print what a person should look at again, beside the output."""
     for sentence in sentences:
         print(printable(f'ballscrew: {sentence}'), file=sys.stderr)
+
+
+def draw_into(folder: Path, draw: Callable[[Path], Iterable[Path]]) -> None:
+    """Draw into a folder, made where it is missing, and print the paths; raises InputError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in draw(folder):
+            print(path, file=sys.stderr)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

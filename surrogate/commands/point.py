@@ -3,13 +3,11 @@
 """The subcommand `point`: solve the screw at one operating point."""
 
 import argparse
-from collections.abc import Callable
 import functools
 from pathlib import Path
-import sys
 from typing import Any
 
-from surrogate.commands.output import add_json, show, tell
+from surrogate.commands.output import add_json, draw_into, show, tell
 from surrogate.files import InputError
 from surrogate.parameters import (
     load_lubricant,
@@ -98,7 +96,6 @@ def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
 
 
 def _sheets(screw: str) -> tuple[Screw, Lubricant]:
-    """Return the sheet of a screw with the default oil, or both sheets of a surface."""
     if not screw.endswith('.npz'):
         return load_screw(screw), load_lubricant('iso_vg_68')
     return screw_and_oil(read(screw).header['inputs'])
@@ -168,7 +165,7 @@ def _point(args: argparse.Namespace) -> int:
     if args.plot:
         from surrogate.screw.figures import draw_point
 
-        picture(args.plot, lambda folder: draw_point(folder, screw, solution, record))
+        draw_into(args.plot, lambda folder: [draw_point(folder, screw, solution, record)])
     return 0 if record.get('converged', True) else 1
 
 
@@ -201,7 +198,7 @@ def _sensitivity(
     if args.plot:
         from surrogate.screw.figures import draw_sensitivity
 
-        picture(args.plot, lambda folder: draw_sensitivity(folder, record))
+        draw_into(args.plot, lambda folder: [draw_sensitivity(folder, record)])
     return 0
 
 
@@ -231,11 +228,3 @@ def prepare(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
-
-
-def picture(folder: Path, draw: Callable[[Path], Path]) -> None:
-    """Draw into a folder, and print the path of the picture; raises InputError."""
-    try:
-        print(draw(folder), file=sys.stderr)
-    except OSError as error:
-        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -39,7 +39,22 @@ def march_case(case: ContactCase) -> tuple[MovingSolution, FractalSurface]:
     assert isinstance(surface, FractalSurface)  # by the checks of a case
     surface, transits = level_surface(surface), case.transits or TRANSITS
     if case.strip is not None:
-        return _march_strip(case, case.strip, surface, transits), surface
+        strip, speed = case_strip(case, case.strip), case.entrainment_speed
+        periodic = periodic_across(surface, strip.width)
+        LOG.info(
+            'strip: to repeat across it the waves are turned by %.2g deg rms; %.2g %% of their '
+            'mean square is lost',
+            math.degrees(periodic.turn),
+            100 * periodic.lost,
+        )
+        heights = periodic.surface.heights
+        scaled = scale_strip(strip, case.lubricant, speed, heights)
+        settings = march_settings(case, scaled)
+        _check_nodes(settings, scaled, strip.width / strip.columns, periodic.surface)
+        solution = march_strip(
+            strip, case.lubricant, speed, heights, transits=transits, settings=settings
+        )
+        return solution, surface
     scaled = scale_contact(case.contact, case.lubricant, case.condition, surface.heights)
     settings = march_settings(case, scaled)
     assert settings.domain is not None
@@ -50,27 +65,6 @@ def march_case(case: ContactCase) -> tuple[MovingSolution, FractalSurface]:
         contact, case.lubricant, case.condition, heights, transits=transits, settings=settings
     )
     return solution, surface
-
-
-def _march_strip(
-    case: ContactCase, stated: CaseStrip, surface: FractalSurface, transits: float
-) -> MovingSolution:
-    """March the strip of a case; the surface repeats with its width."""
-    strip = case_strip(case, stated)
-    periodic = periodic_across(surface, strip.width)
-    LOG.info(
-        'strip: to repeat across it the waves are turned by %.2g deg rms; %.2g %% of their mean '
-        'square is lost',
-        math.degrees(periodic.turn),
-        100 * periodic.lost,
-    )
-    raceway, speed = periodic.surface, case.entrainment_speed
-    scaled = scale_strip(strip, case.lubricant, speed, raceway.heights)
-    settings = march_settings(case, scaled)
-    _check_nodes(settings, scaled, strip.width / strip.columns, raceway)
-    return march_strip(
-        strip, case.lubricant, speed, raceway.heights, transits=transits, settings=settings
-    )
 
 
 def case_strip(case: ContactCase, stated: CaseStrip) -> StripContact:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 import math
 from typing import Any
 
-from surrogate.contact.case import CaseRoughness, ContactCase
+from surrogate.contact.case import ContactCase
 from surrogate.contact.surface import composite_rms, raceway_waves, roughness_words
 from surrogate.ehl.moving import MovingSolution, StripContact
 from surrogate.ehl.moving.interface import HARDNESS, THIN_FILMS
@@ -65,7 +65,19 @@ def rolling_record(
     """
     assert case.roughness is not None
     settings, (semi_axis, _, pressure) = solution.settings, hertz_of(solution)
-    roughness = _roughness_record(case.roughness, surface)
+    standard = raceway_waves(case.roughness) if case.roughness.patch == 'standard' else None
+    roughness = {
+        'sentence': roughness_words(case.roughness, surface),
+        'rms_m': composite_rms(case.roughness),
+        'raceway_rms_m': case.roughness.rms or 0.0,
+        'cutoff_long_m': standard.band.cutoff_long if standard else math.nan,
+        'cutoff_short_m': standard.band.cutoff_short if standard else math.nan,
+        'cutoff_by_table': standard.cutoff_by_table if standard else None,
+        'rms_slope_rad': standard.rms_slope if standard else math.nan,
+        'fractal_dimension': standard.fractal_dimension if standard else math.nan,
+        'fractal_roughness_m': standard.fractal_roughness if standard else math.nan,
+        'shortest_wavelength_m': surface.shortest_wavelength,
+    }
     strip = solution.contact if isinstance(solution.contact, StripContact) else None
     return {
         'status': solution.status.value,
@@ -80,7 +92,7 @@ def rolling_record(
         'rolling_force_N': solution.rolling_loss.value,
         'rolling_force_standard_error_N': solution.rolling_loss.error,
         'smooth_rolling_force_N': solution.smooth_rolling_loss,
-        'film_ratio': solution.central_film / roughness['rms_m'],
+        'film_ratio': solution.central_film / composite_rms(case.roughness),
         'memory_length_m': solution.memory * semi_axis,
         'places': settings.places,
         'grid': [settings.nx, strip.columns if strip else settings.ny],
@@ -100,22 +112,6 @@ def hertz_of(solution: MovingSolution) -> tuple[float, float, float]:
         return contact.semi_axis, math.inf, contact.max_pressure
     ellipse = hertz(contact, solution.condition.load)
     return float(ellipse.semi_axis_x), float(ellipse.semi_axis_y), float(ellipse.max_pressure)
-
-
-def _roughness_record(rough: CaseRoughness, surface: Raceway) -> dict[str, Any]:
-    standard = raceway_waves(rough) if rough.patch == 'standard' else None
-    return {
-        'sentence': roughness_words(rough, surface),
-        'rms_m': composite_rms(rough),
-        'raceway_rms_m': rough.rms or 0.0,
-        'cutoff_long_m': standard.band.cutoff_long if standard else math.nan,
-        'cutoff_short_m': standard.band.cutoff_short if standard else math.nan,
-        'cutoff_by_table': standard.cutoff_by_table if standard else None,
-        'rms_slope_rad': standard.rms_slope if standard else math.nan,
-        'fractal_dimension': standard.fractal_dimension if standard else math.nan,
-        'fractal_roughness_m': standard.fractal_roughness if standard else math.nan,
-        'shortest_wavelength_m': surface.shortest_wavelength,
-    }
 
 
 def rolling_page(record: Mapping[str, Any], case: ContactCase, solution: MovingSolution) -> str:

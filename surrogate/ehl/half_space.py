@@ -97,7 +97,12 @@ def make_half_space(
     if periodic:  # the constant left out must not depend on the grid
         symbol[0, 0] -= scale * dx * 2 * length_x * np.log(dx)
     x, y = make_fft(length_x, dtype), make_fft(length_y, dtype)
-    spectrum = _pack(symbol / (length_x * length_y), symmetric)
+    spectrum = (symbol / (length_x * length_y))[None]
+    if symmetric:  # (Ga + Gb)/2 and (Ga - Gb)/2 of real columns a, b in one
+        half = (spectrum.shape[2] + 1) // 2
+        first, second = spectrum[0, :, :half], np.zeros_like(spectrum[0, :, :half])
+        second[:, : spectrum.shape[2] - half] = spectrum[0, :, half:]
+        spectrum = np.stack([first + second, first - second]) / 2
     ordered = np.empty_like(spectrum)
     ordered[:, x.place] = spectrum
     columns = spectrum.shape[2]
@@ -138,16 +143,6 @@ def _symbol(length_x: int, length_y: int, aspect: float, periodic: bool) -> Arra
     return symbol
 
 
-def _pack(symbol: Array, symmetric: bool) -> Array:
-    """Return planes (G, unused) or, for real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2."""
-    if not symmetric:
-        return symbol[None]
-    half = (symbol.shape[1] + 1) // 2
-    first, second = symbol[:, :half], np.zeros_like(symbol[:, :half])
-    second[:, : symbol.shape[1] - half] = symbol[:, half:]
-    return np.stack([first + second, first - second]) / 2
-
-
 def _near_kernel(symbol: Array) -> Array:
     """
     Return k00, k10, k01, k11 of the 3x3 kernel with the symbol of the full one at high frequency.
@@ -176,20 +171,15 @@ def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
     else:
         _rows_to_spectrum(space, pressure)
         fft_forward(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
-        _multiply(space)
+        re, im, factor = space.columns[0], space.columns[1], space.spectrum[0]
+        for i in range(re.shape[0]):
+            for j in range(re.shape[1]):
+                re[i, j] *= factor[i, j]
+                im[i, j] *= factor[i, j]
         fft_inverse(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
         _spectrum_to_rows(space, out)
         if space.periodic:
             repeat(out)
-
-
-@njit(cache=True, error_model='numpy')
-def _multiply(space: HalfSpace) -> None:
-    re, im, factor = space.columns[0], space.columns[1], space.spectrum[0]
-    for i in range(re.shape[0]):
-        for j in range(re.shape[1]):
-            re[i, j] *= factor[i, j]
-            im[i, j] *= factor[i, j]
 
 
 @njit(cache=True, error_model='numpy')

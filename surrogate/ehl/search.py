@@ -248,7 +248,10 @@ class Search:
         speed, smooth = case.condition.entrainment_speed, case.roughness is None
         grid = case.grid(settings.nx, settings.ny, symmetric=smooth)
         rough = np.zeros(grid.shape) if smooth else case.rough_heights(grid)
-        start = max(speed, case.speed_of_film(self._parting(grid, rough))) if speed else 0.0
+        inside = grid.x[:, None] ** 2 + (grid.y[None, :] / case.ellipticity) ** 2 < 1
+        height = float(rough[inside].std()) if inside.any() else 0.0
+        parting = max(PARTING * height, 2 * case.floor)
+        start = max(speed, case.speed_of_film(parting)) if speed else 0.0
         half, outcome = self.smooth(start, final=smooth and start == speed)
         if not outcome.converged:
             return half, outcome
@@ -279,13 +282,6 @@ class Search:
         )
         wet = self.solve(grid, path(1.0), dry.state, limits) if dry.converged else outcome
         return grid, wet if wet.converged else outcome
-
-    def _parting(self, grid: Grid, rough: Array) -> float:
-        """Return a smooth film that the roughness hardly pierces."""
-        k = self.case.ellipticity
-        inside = grid.x[:, None] ** 2 + (grid.y[None, :] / k) ** 2 < 1
-        height = float(rough[inside].std()) if inside.any() else 0.0
-        return max(PARTING * height, 2 * self.case.floor)
 
     def warm(self, start: ContactSolution) -> GridResult | None:
         """

@@ -9,8 +9,6 @@ gives the torque, its mean the coefficient.
 
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
@@ -30,19 +28,6 @@ RADIAL_NODES, ANGULAR_NODES = 12, 24
 """Quadrature of the ellipse: torque within 3e-4 of a grid four times finer each way."""
 HYSTERESIS = 3 / 32
 """Work of Hertz's pressure on the front half of the ellipse, as a force over Q b / Rx [-]."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Sliding:
-    """
-    Sliding friction of one contact at many points.
-
-    Power per screw speed (a torque) [N m] and slip-opposed mean traction over normal force [-].
-
-    """
-
-    torque: Array
-    friction_coefficient: Array
 
 
 def ellipse_nodes(
@@ -79,9 +64,12 @@ def sliding_friction(
     speed: Array,
     *,
     spin: float | None = None,
-) -> Sliding:
+) -> tuple[Array, Array]:
     """
-    Integrate the traction of one contact; all arrays share one shape.
+    Return power per screw speed (a torque) [N m] and friction coefficient [-] of one contact.
+
+    The coefficient is the mean traction against the slip over the normal force. All arrays share
+    one shape.
 
     `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at
     least 0, `spin` as in `slip_arm`. At speed zero the film carries no traction and the limit of
@@ -114,10 +102,8 @@ def sliding_friction(
     area = weight * (ellipse.semi_axis_x * ellipse.semi_axis_y)[..., None]
     force = np.sum(traction * area, axis=-1)
     normal = np.sum(pressure * area, axis=-1)
-    return Sliding(
-        torque=np.sum(traction * arm * area, axis=-1),
-        friction_coefficient=np.divide(force, normal, out=np.zeros_like(force), where=normal > 0),
-    )
+    coefficient = np.divide(force, normal, out=np.zeros_like(force), where=normal > 0)
+    return np.sum(traction * arm * area, axis=-1), coefficient
 
 
 def mean_sliding_speed(screw: Screw, side: Side, load: float, speed: float) -> float:

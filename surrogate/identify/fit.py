@@ -88,15 +88,6 @@ class Identification:
         return next((estimate for estimate in self.estimates if estimate.name == name), None)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Fit:
-    """Values, whether found, robust spread in standard deviations [-] (0: least squares)."""
-
-    values: Array
-    converged: bool
-    spread: float
-
-
 def identify(
     screw: Screw,
     run: NoLoadRun,
@@ -119,12 +110,16 @@ def identify(
     if 'onset_factor' in fitted:
         return _identify_onset(problem, sigma)
     held = problem.without_effect(problem.start)
-    fit = _fit(problem, problem.start, held, sigma)
+    values, converged = _fit(problem, problem.start, held, sigma)
+    weighted = 0.0
     for _ in range(ROBUST_ROUNDS if loss == 'soft_l1' else 0):
         # The first spread still has the points in it that are far off.
-        spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(fit.values)) / sigma))
-        fit = _fit(problem, fit.values, held, sigma, spread) if spread > 0 else fit
-    return _result(problem, fit, held, sigma)
+        spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(values)) / sigma))
+        if spread > 0:
+            weighted = spread
+            values, converged = _fit(problem, values, held, sigma, weighted)
+    result = _result(problem, values, held, sigma, weighted)
+    return replace(result, converged=converged)
 
 
 def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
@@ -137,13 +132,13 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         return start
 
     def cost(factor: float) -> float:
-        values = _fit(problem, at(factor), {'onset_factor': ''}, sigma).values
+        values, _ = _fit(problem, at(factor), {'onset_factor': ''}, sigma)
         return float(np.sum((problem.residual(values) / sigma) ** 2))
 
     def fitted(start: Array, held: dict[str, str]) -> Identification:
         held = problem.without_effect(start) | held
-        fit = _fit(problem, start, held, sigma)
-        return _result(problem, fit, held, sigma)
+        values, converged = _fit(problem, start, held, sigma)
+        return replace(_result(problem, values, held, sigma), converged=converged)
 
     def without_onset(factor: float, reason: str) -> Identification:
         kept = 'not told without the onset: kept as in the datasheet'
@@ -155,7 +150,9 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     freedom, stated = len(sigma) - len(problem.names), float(problem.start[place])
     scan = scan_onset(cost, freedom, problem.contacts.screw.roughness.lay)
     identified = along(scan)
-    if scan.closed and not _turns_up(problem.run, identified):
+    slowest = int(np.abs(problem.run.speed).argmin())
+    upturn = identified.contacts[slowest] - identified.contacts.min()
+    if scan.closed and not upturn > identified.band[slowest]:
         # The curvature of the rolling loss alone is no sign of contact.
         scan = replace(scan, low=0.0)
         identified = along(scan)
@@ -164,32 +161,27 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     )
     if refusal:
         return replace(without_onset(stated, refusal), onset_refused=True)
-    estimates = tuple(
-        _profiled(estimate, scan, freedom) if estimate.name == 'onset_factor' else estimate
-        for estimate in identified.estimates
-    )
-    return replace(identified, estimates=estimates)
-
-
-def _turns_up(run: NoLoadRun, fit: Identification) -> bool:
-    """Return True if the contacts rise towards low speed by more than the scatter of a point."""
-    slowest = int(np.abs(run.speed).argmin())
-    return bool(fit.contacts[slowest] - fit.contacts.min() > fit.band[slowest])
-
-
-def _profiled(estimate: ParameterEstimate, scan: OnsetScan, freedom: int) -> ParameterEstimate:
-    """Return the onset factor with the interval of its profile, where it has one."""
     if not scan.closed:
-        return estimate
-    low, high = scan.interval(estimate.value, freedom)
-    error = estimate.value * math.log(high / low) / (2 * student_factor(freedom))
-    return replace(estimate, low=low, high=high, standard_error=error, reason='')
+        return identified
+    onset = identified.estimates[place]
+    low, high = scan.interval(onset.value, freedom)
+    error = onset.value * math.log(high / low) / (2 * student_factor(freedom))
+    onset = replace(onset, low=low, high=high, standard_error=error, reason='')
+    estimates = [*identified.estimates]
+    estimates[place] = onset
+    return replace(identified, estimates=tuple(estimates))
 
 
 def _fit(
     problem: DragProblem, start: Array, held: Mapping[str, str], sigma: Array, spread: float = 0.0
-) -> _Fit:
-    """Minimise over the parameters that are not held; residuals over `sigma` [N m]."""
+) -> tuple[Array, bool]:
+    """
+    Minimise over the parameters that are not held; residuals over `sigma` [N m].
+
+    With a robust `spread` in standard deviations [-], 0 for least squares. Returns the values,
+    and whether they were found.
+
+    """
     free = np.array([name not in held for name in problem.names])
     scale = problem.scale[free]
 
@@ -211,40 +203,31 @@ def _fit(
         ftol=TOLERANCE,
         gtol=TOLERANCE,
     )
-    return _Fit(values=values(minimum.x), converged=bool(minimum.success), spread=spread)
-
-
-def _scatter(
-    problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array
-) -> tuple[Array, float, dict[str, str], int]:
-    """
-    Return how sure the parameters are; one at a bound counts as known.
-
-    Their covariance, zero where held; the variance of a point; why some have none; the degrees of
-    freedom.
-
-    """
-    reasons = dict(held) | problem.at_bounds(fit.values)
-    free = [place for place, name in enumerate(problem.names) if name not in reasons]
-    jacobian = problem.jacobian(fit.values)[:, free] / sigma[:, None]
-    reasons |= undetermined(tuple(problem.names[place] for place in free), jacobian)
-    part, variance = covariance(jacobian, problem.residual(fit.values) / sigma, fit.spread)
-    whole = np.zeros((len(problem.names), len(problem.names)))
-    whole[np.ix_(free, free)] = part
-    return whole, variance, reasons, len(sigma) - len(free)
+    return values(minimum.x), bool(minimum.success)
 
 
 def _result(
-    problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array
+    problem: DragProblem,
+    values: Array,
+    held: Mapping[str, str],
+    sigma: Array,
+    weighted: float = 0.0,
 ) -> Identification:
-    run, values = problem.run, fit.values
-    spread, variance, reasons, freedom = _scatter(problem, fit, held, sigma)
-    known = [n for n, name in enumerate(problem.names) if name not in reasons]
+    """Return the fit with how sure it is; a parameter at a bound counts as known."""
+    run, names = problem.run, problem.names
     residual, jacobian = problem.residual(values), problem.jacobian(values)
+    reasons = dict(held) | problem.at_bounds(values)
+    free = [place for place, name in enumerate(names) if name not in reasons]
+    scaled = jacobian[:, free] / sigma[:, None]
+    freedom = len(sigma) - len(free)
+    reasons |= undetermined(tuple(names[place] for place in free), scaled)
+    spread = np.zeros((len(names), len(names)))
+    spread[np.ix_(free, free)], variance = covariance(scaled, residual / sigma, weighted)
+    known = [place for place, name in enumerate(names) if name not in reasons]
     width = student_factor(freedom)
     curve = np.einsum('pi,ij,pj->p', jacobian, spread, jacobian)
     estimates = []
-    for place, (name, value) in enumerate(zip(problem.names, values.tolist(), strict=True)):
+    for place, (name, value) in enumerate(zip(names, values.tolist(), strict=True)):
         if name in reasons:
             interval: dict[str, Any] = {'reason': reasons[name]}
         else:
@@ -255,9 +238,9 @@ def _result(
     before = problem.torque(problem.start)
     chi_square = float(np.sum((residual / sigma) ** 2)) / freedom
     return Identification(
-        converged=fit.converged,
+        converged=True,
         estimates=tuple(estimates),
-        correlated=tuple(problem.names[place] for place in known),
+        correlated=tuple(names[place] for place in known),
         correlation=correlation(spread[np.ix_(known, known)]),
         before=before,
         after=problem.torque(values),

@@ -12,7 +12,7 @@ import numpy as np
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
-from surrogate.identify.fit import Identification, ParameterEstimate
+from surrogate.identify.fit import Identification
 from surrogate.identify.model import ContactModel, thickened
 from surrogate.identify.onset import calibrated_band, onset_speeds
 from surrogate.parameters import Lubricant, Screw
@@ -45,7 +45,10 @@ def identification_record(
     screw: Screw, run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> dict[str, Any]:
     """Return an identification as plain numbers, SI units, NaN with a reason where unknown."""
-    speed, share = np.abs(run.speed), _contact_share(run, fit)
+    speed = np.abs(run.speed)
+    parasitic = fit.value('parasitic_torque') + fit.value('parasitic_torque_rate') * speed
+    total = fit.contacts + parasitic
+    share = np.divide(fit.contacts, total, out=np.ones_like(total), where=total > 0)
     return {
         'tier': contacts.tier,
         'status': _status(fit),
@@ -77,7 +80,7 @@ def identification_record(
         'residual_rms_before_Nm': fit.rms_before,
         'degrees_of_freedom': fit.degrees_of_freedom,
         'reduced_chi_square': fit.reduced_chi_square,
-        'contact_share_range': list(share),
+        'contact_share_range': [float(share.min()), float(share.max())],
         'catalogue_drag_torque_Nm': drag_torque_catalogue(
             screw.preload, screw.lead, helix_angle(screw)
         ),
@@ -108,16 +111,6 @@ def _onset_record(
         'reason': onset.reason,
         'refused': fit.onset_refused,
     }
-
-
-def _contact_share(run: NoLoadRun, fit: Identification) -> tuple[float, float]:
-    """Return the least and largest share of the contacts in the friction torque modelled [-]."""
-    parasitic = fit.value('parasitic_torque') + fit.value('parasitic_torque_rate') * np.abs(
-        run.speed
-    )
-    total = fit.contacts + parasitic
-    share = np.divide(fit.contacts, total, out=np.ones_like(total), where=total > 0)
-    return float(share.min()), float(share.max())
 
 
 def _warnings(
@@ -212,21 +205,20 @@ def identified_oil(
 
 
 def _provenance(run: NoLoadRun, contacts: ContactModel, fit: Identification) -> str:
-    speed = np.abs(run.speed) / RPM
+    speed, estimates = np.abs(run.speed) / RPM, []
+    for estimate in fit.estimates:
+        unit = f' {UNITS[estimate.name]}' if UNITS[estimate.name] != '-' else ''
+        interval = f'95 % {estimate.low:.5g} to {estimate.high:.5g}'
+        estimates.append(
+            f'{estimate.name} {estimate.value:.5g}{unit} ({estimate.reason or interval})'
+        )
     return (
         f'{PROVENANCE} {run.source}: {len(speed)} points from '
         f'{digits(speed.min(), 4)} to {digits(speed.max(), 4)} rev/min, tier {contacts.tier}, '
         f'oil {contacts.lubricant.name} at '
         f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {fit.rms:.3g} N m rms. '
-        + '; '.join(_sentence(estimate) for estimate in fit.estimates)
-        + '.'
+        f'{"; ".join(estimates)}.'
     )
-
-
-def _sentence(estimate: ParameterEstimate) -> str:
-    unit = f' {UNITS[estimate.name]}' if UNITS[estimate.name] != '-' else ''
-    interval = f'95 % {estimate.low:.5g} to {estimate.high:.5g}'
-    return f'{estimate.name} {estimate.value:.5g}{unit} ({estimate.reason or interval})'
 
 
 def page(record: Mapping[str, Any]) -> str:

@@ -123,10 +123,13 @@ def identify_fractal(
     mean = measured.mean(axis=1)
     dimension = fit(mean)
     rest = gap(dimension, mean)
+    left_out = [fit(group) for group in _left_out(measured)]
     return FractalFit(
         fractal_dimension=dimension,
         fractal_roughness=1e-9 * math.exp(float(rest.mean()) / (2 * (dimension - 2))),
-        dimension_error=_jackknife([fit(group) for group in _left_out(measured)]),
+        dimension_error=math.sqrt((len(left_out) - 1) * float(np.var(left_out)))
+        if left_out
+        else math.nan,
         misfit=float(np.std(rest)),
         shortest_distance=float(lags[0] * spacing),
         longest_distance=float(lags[-1] * spacing),
@@ -172,8 +175,3 @@ def _left_out(measured: Array) -> list[Array]:
     groups = min(GROUPS, count)
     label = np.arange(count) * groups // count
     return [measured[:, label != one].mean(axis=1) for one in range(groups)] if count >= 4 else []
-
-
-def _jackknife(values: list[float]) -> float:
-    count = len(values)
-    return math.sqrt((count - 1) * float(np.var(values))) if values else math.nan

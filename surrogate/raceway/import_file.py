@@ -64,7 +64,17 @@ def _read_csv(path: Path) -> tuple[Array, float, float]:
     table = _numbers(lines[1:], path)
     if len(columns) > 1:
         return _points(table, columns, path)
-    return _matrix(table * columns['z'], spacings, path)
+    heights = table * columns['z']
+    if len(spacings) == 2:  # columns along x, lines along y
+        return heights.T, spacings['x'], spacings['y']
+    if 1 not in heights.shape:
+        raise InputError(
+            f'{path}: {heights.shape[0]} lines of {heights.shape[1]} heights are a map, which '
+            'needs spacing_x and spacing_y in the first line'
+        )
+    along_x = 'x' in spacings
+    gap = spacings['x' if along_x else 'y']
+    return heights.reshape((-1, 1) if along_x else (1, -1)), gap, gap
 
 
 def _header(line: str, path: Path) -> tuple[dict[str, float], dict[str, float]]:
@@ -119,22 +129,7 @@ def _number(word: str, path: Path, line: int) -> float:
     return value
 
 
-def _matrix(heights: Array, spacings: dict[str, float], path: Path) -> tuple[Array, float, float]:
-    """Arrange a table of heights [m]: columns along x, lines along y."""
-    if len(spacings) == 2:
-        return heights.T, spacings['x'], spacings['y']
-    if 1 not in heights.shape:
-        raise InputError(
-            f'{path}: {heights.shape[0]} lines of {heights.shape[1]} heights are a map, which '
-            'needs spacing_x and spacing_y in the first line'
-        )
-    along_x = 'x' in spacings
-    gap = spacings['x' if along_x else 'y']
-    return heights.reshape((-1, 1) if along_x else (1, -1)), gap, gap
-
-
 def _points(table: Array, columns: dict[str, float], path: Path) -> tuple[Array, float, float]:
-    """Arrange points with their places on a grid."""
     if table.shape[1] != len(columns):
         raise InputError(
             f'{path}: a line has {table.shape[1]} numbers, the first line names {len(columns)}'

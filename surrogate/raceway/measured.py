@@ -71,25 +71,20 @@ class MeasuredSurface:
         last = len(values) - 1
         if last == 0:
             return np.repeat(values, len(places), axis=0)
-        return np.asarray(
-            make_interp_spline(np.arange(last + 1), values, k=3)(
-                self._fold(places / spacing + last / 2, last, spacing, name)
-            )
-        )
-
-    def _fold(self, rows: Array, last: int, spacing: float, name: str) -> Array:
-        """Return places on the map [samples]; a place on its edge may be off by rounding."""
-        if np.all((rows > -1e-6) & (rows < last + 1e-6)):
-            return np.asarray(np.clip(rows, 0, last))
-        if self.outside == 'mirror':
+        rows = places / spacing + last / 2
+        if np.all((rows > -1e-6) & (rows < last + 1e-6)):  # beyond the edge by rounding
+            rows = np.clip(rows, 0, last)
+        elif self.outside == 'mirror':
             turn = np.mod(rows, 2 * last)
-            return np.asarray(np.minimum(turn, 2 * last - turn))
-        reach = float(np.max(np.abs(rows - last / 2)))
-        raise InputError(
-            f'{self.source}: the contact needs heights to {1e3 * reach * spacing:.4g} mm from its '
-            f'centre along {name}, the map ends at {1e3 * last / 2 * spacing:.4g} mm: measure a '
-            'larger area, make the domain smaller or allow the map to be mirrored'
-        )
+            rows = np.minimum(turn, 2 * last - turn)
+        else:
+            reach = float(np.max(np.abs(rows - last / 2)))
+            raise InputError(
+                f'{self.source}: the contact needs heights to {1e3 * reach * spacing:.4g} mm from '
+                f'its centre along {name}, the map ends at {1e3 * last / 2 * spacing:.4g} mm: '
+                'measure a larger area, make the domain smaller or allow the map to be mirrored'
+            )
+        return np.asarray(make_interp_spline(np.arange(last + 1), values, k=3)(rows))
 
 
 def measured_surface(
@@ -111,7 +106,19 @@ def measured_surface(
     raw = np.asarray(heights, dtype=float)
     if outside not in get_args(Outside):
         raise InputError(f'{source}: outside is {outside!r}, allowed is refuse or mirror')
-    _check_heights(raw, source)
+    if raw.ndim != 2 or not any(points > 1 for points in raw.shape):
+        raise InputError(f'{source}: {raw.size} points, allowed is {FEWEST_POINTS} or more')
+    if any(1 < points < FEWEST_POINTS for points in raw.shape):
+        raise InputError(
+            f'{source}: {" x ".join(str(points) for points in raw.shape)} points, allowed is '
+            f'{FEWEST_POINTS} or more along a measured direction'
+        )
+    missing = raw.size - int(np.isfinite(raw).sum())
+    if missing:
+        raise InputError(
+            f'{source}: {missing} of {raw.size} heights are not finite numbers, allowed is 0: '
+            'fill the gaps with the software of the instrument'
+        )
     coarsest = max(
         gap for gap, points in zip((spacing_x, spacing_y), raw.shape, strict=True) if points > 1
     )
@@ -134,19 +141,3 @@ def measured_surface(
         source=source,
         outside=outside,
     )
-
-
-def _check_heights(raw: Array, source: str) -> None:
-    if raw.ndim != 2 or not any(points > 1 for points in raw.shape):
-        raise InputError(f'{source}: {raw.size} points, allowed is {FEWEST_POINTS} or more')
-    if any(1 < points < FEWEST_POINTS for points in raw.shape):
-        raise InputError(
-            f'{source}: {" x ".join(str(points) for points in raw.shape)} points, allowed is '
-            f'{FEWEST_POINTS} or more along a measured direction'
-        )
-    missing = raw.size - int(np.isfinite(raw).sum())
-    if missing:
-        raise InputError(
-            f'{source}: {missing} of {raw.size} heights are not finite numbers, allowed is 0: '
-            'fill the gaps with the software of the instrument'
-        )

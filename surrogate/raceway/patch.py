@@ -70,7 +70,6 @@ class Window:
     length_y: float
 
     def __post_init__(self) -> None:
-        """Check the sides."""
         for name in ('length_x', 'length_y'):
             if not 0 < getattr(self, name) < math.inf:
                 raise InputError(

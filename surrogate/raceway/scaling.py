@@ -85,12 +85,16 @@ def scale_spectrum(
     found = float(unit**2 @ reading.height)
     smooth = spectrum.rms == 0
     height = 0.0 if smooth else spectrum.rms / math.sqrt(found)
+    published = math.nan
+    if height:  # the amplitude of the longest wave is L (G/L)^(D-2) sqrt(ln g/M)
+        ratio = height / (longest * math.sqrt(math.log(spectrum.scale_ratio) / spectrum.ridges))
+        published = float(longest * ratio ** (1 / (dimension - 2)))
     return ScaledSpectrum(
         wave_number=number,
         amplitude=np.zeros(len(order)) if smooth else np.asarray(height * unit),
         direction=spectrum.directions,
         fractal_dimension=dimension,
-        fractal_roughness=_published_roughness(spectrum, longest, height, dimension),
+        fractal_roughness=published,
         rms=spectrum.rms,
         rms_slope=0.0 if smooth else _rms_slope(spectrum, order, reading, dimension),
         band=spectrum.band,
@@ -159,16 +163,6 @@ def _dimension(spectrum: RoughnessSpectrum, order: NDArray[np.int64], reading: R
             f'{1e6 * spectrum.rms:g} um between these cut-offs'
         )
     return float(brentq(excess, *DIMENSIONS, xtol=1e-10))
-
-
-def _published_roughness(
-    spectrum: RoughnessSpectrum, longest: float, height: float, dimension: float
-) -> float:
-    """Return G [m] from the amplitude of the longest wave [m], L (G/L)^(D-2) sqrt(ln g/M)."""
-    if not height:
-        return math.nan
-    ratio = height / (longest * math.sqrt(math.log(spectrum.scale_ratio) / spectrum.ridges))
-    return float(longest * ratio ** (1 / (dimension - 2)))
 
 
 def draw_raceway(scaled: ScaledSpectrum, seed: int, *, field: int = 0) -> FractalSurface:

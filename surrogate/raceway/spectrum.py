@@ -101,7 +101,6 @@ class RoughnessSpectrum(Checked):
     ridges: int = count(1, 1000, default=10, means='ridges of the generator')
 
     def __post_init__(self) -> None:
-        """Check each value, and that the band is not upside down, as `ProfileBand` does."""
         Checked.__post_init__(self)
         if self.fractal_dimension is None and self.rms_slope is None and self.rms:
             raise InputError(

@@ -37,7 +37,6 @@ class ProfileBand:
     cutoff_long: float
 
     def __post_init__(self) -> None:
-        """Check that the band is not upside down."""
         if not 0 <= self.cutoff_short < math.inf:
             raise InputError(
                 f'roughness: short cut-off is {1e6 * self.cutoff_short:g} um, allowed is 0 or more'

@@ -43,6 +43,8 @@ SMALLEST_DAMPING = 1 / 64
 """Where a Newton step is given up [-]."""
 LARGEST_CONDITION = 1e14
 """Condition of the equations above which the motion counts as undetermined [-]."""
+Iterate = tuple[Array, BalanceStatus, int]
+"""Where a Newton iteration ended: scaled unknowns, status, steps."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,15 +60,6 @@ class BalanceSettings:
     step_tolerance: float = 1e-8
     balance_tolerance: float = 1e-10
     newton_limit: int = 40
-
-
-@dataclass(frozen=True, slots=True)
-class _Iterate:
-    """Where a Newton iteration ended: scaled unknowns, status, steps."""
-
-    unknowns: Array
-    status: BalanceStatus = BalanceStatus.NOT_SOLVED
-    steps: int = 0
 
 
 def balance_ball(
@@ -117,17 +110,14 @@ def balance_ball(
 
 def balance_pairs(problem: BallProblem, settings: BalanceSettings) -> tuple[BallBalance, ...]:
     """Return the balance of a ball for each pair of its flanks; all end with one status."""
-    iterate = _solve(problem, settings)
-    status = iterate.status
+    unknowns, status, steps = _solve(problem, settings)
     if status is BalanceStatus.CONVERGED:
-        balances = converged_balances(problem, iterate.unknowns, iterate.steps)
+        balances = converged_balances(problem, unknowns, steps)
         if balances[0].imbalance <= settings.balance_tolerance:
             return balances
         status = BalanceStatus.STALLED
     return tuple(
-        BallBalance(
-            status=status, speed=problem.speed, flank=place.flank, iterations=iterate.steps
-        )
+        BallBalance(status=status, speed=problem.speed, flank=place.flank, iterations=steps)
         for place in problem.flanks[::2]
     )
 
@@ -168,18 +158,18 @@ def _normal_force(screw: Screw, axial_force: float) -> float:
     return axial_force / (math.sin(screw.contact_angle) * math.cos(helix_angle(screw)))
 
 
-def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
+def _solve(problem: BallProblem, settings: BalanceSettings) -> Iterate:
     """Solve with friction that sharpens in a few large stages, or else in many small ones."""
     coarse = tuple(replace(place, traction=place.traction.sample()) for place in problem.flanks)
     rough = replace(problem, flanks=coarse)
     for ratio in STAGE_RATIOS:
-        iterate = _Iterate(unknowns=problem.frictionless())
+        iterate: Iterate = problem.frictionless(), BalanceStatus.NOT_SOLVED, 0
         stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
         for stage in (*stages, problem):
             sharp = stage.slip_floor == problem.slip_floor
             tolerance = settings.step_tolerance if sharp else STAGE_TOLERANCE
             iterate = _newton(stage, iterate, tolerance, settings.newton_limit)
-            if iterate.status is not BalanceStatus.CONVERGED:
+            if iterate[1] is not BalanceStatus.CONVERGED:
                 break
         else:
             return iterate
@@ -200,7 +190,7 @@ def _floors(problem: BallProblem, ratio: float) -> list[float]:
     return [*(own * ratio**power for power in range(count, 0, -1)), problem.slip_floor]
 
 
-def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int) -> _Iterate:
+def _newton(problem: BallProblem, start: Iterate, tolerance: float, limit: int) -> Iterate:
     """
     Iterate with damping by the natural monotonicity test.
 
@@ -208,23 +198,27 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
     Methods for Nonlinear Problems (2004), section 3.3.
 
     """
-    unknowns, friction = start.unknowns, wrenches(problem, start.unknowns)
-    for steps in range(start.steps + 1, start.steps + 1 + limit):
+    unknowns, _, before = start
+    friction = wrenches(problem, unknowns)
+    for steps in range(before + 1, before + 1 + limit):
         imbalance, jacobian = linearise(problem, unknowns, friction)
-        if not _regular(jacobian):
-            return _Iterate(unknowns, BalanceStatus.UNDETERMINED, steps)
+        rows = np.abs(jacobian).max(axis=1, keepdims=True)
+        finite = np.isfinite(jacobian).all() and rows.min() > 0
+        if not (finite and np.linalg.cond(jacobian / rows) < LARGEST_CONDITION):
+            # Whatever the size of their rows, the equations leave an unknown open.
+            return unknowns, BalanceStatus.UNDETERMINED, steps
         step = np.asarray(np.linalg.solve(jacobian, -imbalance), dtype=np.float64)
         if np.linalg.norm(step) <= tolerance:
             legal = _legal(problem, unknowns + step)
             status = BalanceStatus.CONVERGED if legal else BalanceStatus.OUT_OF_RANGE
-            return _Iterate(unknowns + step, status, steps)
+            return unknowns + step, status, steps
         trial = _search(problem, unknowns, step, jacobian)
         if trial is None:
             legal = _legal(problem, unknowns + SMALLEST_DAMPING * step)
             status = BalanceStatus.STALLED if legal else BalanceStatus.OUT_OF_RANGE
-            return _Iterate(unknowns, status, steps)
+            return unknowns, status, steps
         unknowns, friction = trial
-    return _Iterate(unknowns, BalanceStatus.STALLED, steps)
+    return unknowns, BalanceStatus.STALLED, steps
 
 
 def _search(
@@ -251,14 +245,6 @@ def _legal(problem: BallProblem, unknowns: Array) -> bool:
     angles = np.array(problem.angles(values))
     pressed = min(problem.normal_forces(values)[:2]) > 0
     return bool(pressed and angles.min() > 0 and angles.max() < 0.5 * math.pi)
-
-
-def _regular(jacobian: Array) -> bool:
-    """Return True if the equations decide every unknown, whatever the size of their rows."""
-    rows = np.abs(jacobian).max(axis=1, keepdims=True)
-    if not (np.isfinite(jacobian).all() and rows.min() > 0):
-        return False
-    return bool(np.linalg.cond(jacobian / rows) < LARGEST_CONDITION)
 
 
 def _check(

@@ -82,7 +82,6 @@ class BallProblem(ABC):
     scales: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Derive what every evaluation needs."""
         object.__setattr__(self, 'axis', axis_vector(self.screw))
         # The pressure centre lies upstream: M_r = -integral x p dA = 2 Rx F_roll along e_p where
         # the entrainment is along t.
@@ -179,7 +178,6 @@ class FourPointBall(BallProblem):
     springs: dict[Side, float] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Derive what every evaluation needs."""
         springs = {
             side: float(hertz(screw_contact(self.screw, side), 1.0).approach) for side in SIDES
         }

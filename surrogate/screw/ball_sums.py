@@ -81,15 +81,9 @@ def sum_friction(
         grown[2] -= drag * (arm * more_p - 2 * bow * slip_p) + change * tumble
         grown[3] -= drag * (y[n] * more_t - x[n] * more_p) + (drag + change) * spin
         grown[4] -= drag * (2 * bow * slip_t - arm * more_t) + change * roll
-    return total, _symmetric(upper), grown, power
-
-
-@njit(cache=True)
-def _symmetric(upper: Array) -> Array:
-    """Return the matrix (5, 5) of an upper triangle row by row."""
     matrix, n = np.empty((5, 5)), 0
     for k in range(5):
         for m in range(k, 5):
             matrix[k, m] = matrix[m, k] = upper[n]
             n += 1
-    return matrix
+    return total, matrix, grown, power

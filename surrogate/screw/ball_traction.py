@@ -155,7 +155,8 @@ def solved_traction(
     """
     if not solution.converged:
         raise InputError(f'no traction without a solved contact: {solution.status.value}')
-    _check_floor(slip_floor)
+    if not (math.isfinite(slip_floor) and slip_floor > 0):
+        raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is more than 0')
     nodes = node_strengths(
         solution, asperity_friction=asperity_friction, asperity_share=asperity_share
     )
@@ -207,8 +208,3 @@ def integrate_traction(
     )
     by_load = (values + traction.growth * by_size) / load
     return Wrench(values=values, by_motion=by_motion, by_load=by_load, power=power)
-
-
-def _check_floor(floor: float) -> None:
-    if not (math.isfinite(floor) and floor > 0):
-        raise InputError(f'slip_floor is {floor!r} m/s, allowed is more than 0')

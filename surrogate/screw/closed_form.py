@@ -26,7 +26,7 @@ from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant
 from surrogate.screw.ball_motion import four_point_motion, relative_motion
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
@@ -91,23 +91,6 @@ def solve(
     return _combine(opened, contacts, speed)
 
 
-def _slip(screw: Screw, nut: NutName, side: Side) -> dict[str, float]:
-    """Return the spin of a flank of an oversize ball per screw speed; nothing for other balls."""
-    if screw.nut != 'oversize':
-        return {}
-    motion = four_point_motion(screw, 1.0)
-    *_, spin, _ = relative_motion(
-        screw,
-        side,
-        angle=screw.contact_angle,
-        flank=1 if nut == 'loaded' else -1,
-        speed=1.0,
-        orbit=motion.orbit_rate,
-        rotation=motion.rotation,
-    )
-    return {'spin': abs(float(spin))}
-
-
 def _solve_contact(
     opened: Contacts,
     nut: NutName,
@@ -127,8 +110,23 @@ def _solve_contact(
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
     rcs, share, loss = touching(side, force, slow, ratio)
-    thickness, slip = np.nan_to_num(film), _slip(screw, nut, side)
-    sliding = sliding_friction(screw, side, ellipse, thickness, share, oil, speed, **slip)
+    slip = {}
+    if screw.nut == 'oversize':  # the spin of a flank per screw speed
+        motion = four_point_motion(screw, 1.0)
+        *_, spin, _ = relative_motion(
+            screw,
+            side,
+            angle=screw.contact_angle,
+            flank=1 if nut == 'loaded' else -1,
+            speed=1.0,
+            orbit=motion.orbit_rate,
+            rotation=motion.rotation,
+        )
+        slip['spin'] = abs(float(spin))
+    thickness = np.nan_to_num(film)
+    torque, coefficient = sliding_friction(
+        screw, side, ellipse, thickness, share, oil, speed, **slip
+    )
     rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return PointContact(
         nut=nut,
@@ -143,9 +141,9 @@ def _solve_contact(
         film_ratio=ratio,
         rcs=rcs,
         asperity_share=share,
-        friction_coefficient=sliding.friction_coefficient,
+        friction_coefficient=coefficient,
         rolling_force=rolling,
-        sliding_torque=balls * sliding.torque,
+        sliding_torque=balls * torque,
         rolling_torque=2 * balls * rolling * arm,
     )
 

@@ -154,8 +154,23 @@ def solve_sides(
     known = start or [(None, None)] * len(SIDES)
     solved = []
     for side, (contact, load, near) in enumerate(zip(contacts, loads, known, strict=True)):
+        condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
+        case = contact.geometry, contact.oil, condition
+        even = replace(contact.settings.smooth, film_floor=contact.film_floor)
+        smooth, pressed = near
         with at(side=side + 1):
-            solved.append(_solve_side(contact, load, near))
+            same = (
+                smooth is not None
+                and smooth.converged
+                and (*case, even)
+                == (*(smooth.contact, smooth.lubricant, smooth.condition, smooth.settings),)
+            )
+            if smooth is None or not same:
+                smooth = solve_contact(*case, settings=even, start=smooth)
+            if contact.raceway is not None and smooth.converged:
+                solved.append(_standing(contact, smooth, pressed))
+            else:
+                solved.append(_rolling(contact, smooth))
     return tuple(solved)
 
 
@@ -165,24 +180,6 @@ def smooth_film(smooth: ContactSolution) -> float:
         return 0.0
     extrapolated = smooth.extrapolated_film
     return smooth.central_film if math.isnan(extrapolated) else extrapolated
-
-
-def _solve_side(contact: RollingContact, load: float, start: Start) -> SolvedContact:
-    """Return a contact under a normal force [N], from a near one."""
-    condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
-    case = contact.geometry, contact.oil, condition
-    even, near = replace(contact.settings.smooth, film_floor=contact.film_floor), start[0]
-    if (
-        near is not None
-        and near.converged
-        and (near.contact, near.lubricant, near.condition, near.settings) == (*case, even)
-    ):
-        smooth = near
-    else:
-        smooth = solve_contact(*case, settings=even, start=near)
-    if contact.raceway is not None and smooth.converged:
-        return _standing(contact, smooth, start[1])
-    return _rolling(contact, smooth)
 
 
 def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
@@ -215,14 +212,12 @@ def with_oil_of(contact: RollingContact, solved: SolvedContact) -> SolvedContact
 def _asperities(
     contact: RollingContact, law: AsperityLaw, condition: Condition
 ) -> AsperityContact:
-    """Return what asperities do on the raceway of a contact."""
     return law.contact(contact.side, contact.geometry, condition, contact.oil, contact.film_floor)
 
 
 def _standing(
     contact: RollingContact, smooth: ContactSolution, start: ContactSolution | None
 ) -> SolvedContact:
-    """Return a contact solved with its roughness, which stands still."""
     assert contact.raceway is not None
     wave = contact.raceway.shortest_wavelength
     rough = _across(contact.settings, smooth.semi_axis_y, wave)

@@ -129,7 +129,6 @@ def _map(axes: Axes, rough: ContactSolution, field: Array, **options: Any) -> An
 
 
 def _mark_contact(axes: Axes, rough: ContactSolution) -> None:
-    """Colour the nodes where asperities carry."""
     touching = np.where(punctured_nodes(rough), 1.0, np.nan)
     if np.isfinite(touching).any():
         axes.pcolormesh(
@@ -143,7 +142,6 @@ def _mark_contact(axes: Axes, rough: ContactSolution) -> None:
 
 
 def _draw_slip(axes: Axes, screw: Screw, contact: ScrewContact, rough: ContactSolution) -> None:
-    """Draw the slip of the ball at some places of the ellipse."""
     if contact.motion is None:
         return
     along, across = contact_slip(screw, rough, contact.side, contact.motion)

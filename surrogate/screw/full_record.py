@@ -69,6 +69,14 @@ def solution_record(
     screw, heated = opened.sheet, settings.inlet_heating
     place = abs(point.speed), point.opposing_load, point.temperature
     screw_side, nut_side = solution.contacts[:2]
+    sliding = []
+    for contact in solution.contacts:
+        mean = math.nan
+        if contact.solved is not None and contact.motion is not None:
+            pressed = contact.solved.pressed
+            slip = np.hypot(*contact_slip(screw, pressed, contact.side, contact.motion))
+            mean = float(np.average(slip, weights=pressed.pressure))
+        sliding.append(mean)
     record = point_record(
         opened,
         lubricant,
@@ -77,7 +85,7 @@ def solution_record(
         closed_form.solve(opened, lubricant, *place, inlet_heating=heated),
         tier=TIER,
         reasons=[_reason(solution, contact) for contact in solution.contacts],
-        sliding=[_sliding_speed(screw, contact) for contact in solution.contacts],
+        sliding=sliding,
         angles=(screw_side.contact_angle, nut_side.contact_angle),
         warnings=[*_warnings(screw, solution, shortest_on_grid(screw, settings))],
         inlet_heating=heated,
@@ -94,15 +102,6 @@ def _reason(solution: ScrewSolution, contact: ScrewContact) -> str:
     if contact.solved is None:
         return 'no load on this nut, so no contact'
     return '' if solution.converged else solution.status
-
-
-def _sliding_speed(screw: Screw, contact: ScrewContact) -> float:
-    """Return the mean sliding speed under the pressure of a contact [m/s], NaN if not balanced."""
-    if contact.solved is None or contact.motion is None:
-        return math.nan
-    pressed = contact.solved.pressed
-    slip = np.hypot(*contact_slip(screw, pressed, contact.side, contact.motion))
-    return float(np.average(slip, weights=pressed.pressure))
 
 
 def _warnings(screw: Screw, solution: ScrewSolution, wave: float) -> Iterator[str]:

@@ -167,7 +167,6 @@ def contact_failure(name: NutName, solved: Sequence[SolvedContact | None]) -> st
 def _contact(
     screw: Screw, nut: NutName, side: Side, solved: SolvedContact | None, ball: BallBalance | None
 ) -> ScrewContact:
-    """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
     motion = ball.motion if ball else None
     idle = ScrewContact(

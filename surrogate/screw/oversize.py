@@ -61,23 +61,23 @@ def solve_oversize(
     for damping in DAMPINGS:
         if not max(load_change(nut) for nut in nuts) > tolerance:
             break
-        pairs = [
-            _again(contacts, nut, pair, damping) for nut, pair in zip(nuts, pairs, strict=True)
-        ]
+        again: list[Pair] = []
+        for nut, pair in zip(nuts, pairs, strict=True):
+            loads = [before.pressed.condition.load for before in pair if before is not None]
+            if len(loads) < len(pair):
+                again.append(pair)
+                continue
+            # Towards the forces of the balance; of flanks that were left as before.
+            forces = [
+                load * (contact.ball.normal_force / load) ** damping
+                if contact.solved is not None
+                else load
+                for contact, load in zip(nut.contacts, loads, strict=True)
+            ]
+            again.append(solve_sides(contacts, (forces[0], forces[1])))
+        pairs = again
         nuts = make_oversize(screw, point, carried, pairs)
     return nuts
-
-
-def _again(contacts: Sequence[RollingContact], nut: SolvedNut, pair: Pair, damping: float) -> Pair:
-    """Return a pair solved under forces towards those of the balance, of left flanks as before."""
-    forces = []
-    for contact, before in zip(nut.contacts, pair, strict=True):
-        if before is None:
-            return pair
-        load = before.pressed.condition.load
-        ratio = contact.ball.normal_force / load if contact.solved is not None else 1.0
-        forces.append(load * ratio**damping)
-    return solve_sides(contacts, (forces[0], forces[1]))
 
 
 def make_oversize(

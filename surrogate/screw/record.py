@@ -128,9 +128,20 @@ def point_record(
     screw = opened.sheet
     contacts = [
         with_wear(
-            {'nut': contact.nut, 'side': contact.side, 'reason': reason} | declared(contact), speed
+            {'nut': contact.nut, 'side': contact.side, 'reason': reason} | declared(contact), slip
         )
-        for contact, reason, speed in zip(result.contacts, reasons, sliding, strict=True)
+        for contact, reason, slip in zip(result.contacts, reasons, sliding, strict=True)
+    ]
+    # The speed that a contact is taken at: a starved inlet has less to shear.
+    speed = starved_speed(lubricant, formulas.entrainment_speed)
+    heating = [
+        float(
+            heating_factor(
+                screw, lubricant, contact.side, contact.normal_force, speed, point.temperature
+            )
+        )
+        for contact in formulas.contacts
+        if contact.normal_force > 0
     ]
     worst, (loaded, relieved) = contacts[int(result.worst_contact)], result.normal_forces
     return {
@@ -151,7 +162,7 @@ def point_record(
         **most_wear(contacts),
         'regime': regime_of(float(result.film_ratio)).word,
         'inlet_heating': inlet_heating,
-        'inlet_heating_factor': _heating_factor(screw, lubricant, point, formulas),
+        'inlet_heating_factor': min(heating, default=math.nan),
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
         'normal_force_loaded_N': float(loaded),
         'normal_force_relieved_N': float(relieved),
@@ -171,24 +182,6 @@ def _with_drag(screw: Screw, point: OperatingPoint, friction_torque: float) -> d
     return {'typical_drag': torque.with_typical_drag(*place, screw.likely_drag)}
 
 
-def _heating_factor(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, result: ScrewPoint[Array]
-) -> float:
-    """Return the least film factor of the heated inlets of contacts that carry [-]."""
-    # The speed that a contact is taken at: a starved inlet has less to shear.
-    speed = starved_speed(lubricant, result.entrainment_speed)
-    factors = [
-        float(
-            heating_factor(
-                screw, lubricant, contact.side, contact.normal_force, speed, point.temperature
-            )
-        )
-        for contact in result.contacts
-        if contact.normal_force > 0
-    ]
-    return min(factors, default=math.nan)
-
-
 def with_wear(contact: dict[str, Any], sliding: float) -> dict[str, Any]:
     """Return the record of a contact with its numbers of wear, mean `sliding` speed [m/s]."""
     if not contact['normal_force_N']:
@@ -206,7 +199,6 @@ def most_wear(contacts: list[dict[str, Any]]) -> dict[str, float]:
 def _comparators(
     opened: Contacts, point: OperatingPoint, loaded_screw: PointContact[Array]
 ) -> dict[str, Any]:
-    """Return what the classical formulas say of the same point."""
     screw, load = opened.sheet, point.opposing_load
     angle = helix_angle(screw)
     forces = [float(force) for force in nut_forces(load, screw.preload)]

@@ -200,7 +200,6 @@ def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
 
 
 def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> ScrewSolution:
-    """Add up both nuts."""
     screw, speed, load = opened.sheet, abs(point.speed), point.opposing_load
     contacts = nuts[0].contacts + nuts[1].contacts
     worst = worst_contact(contacts)

@@ -116,7 +116,6 @@ def figure_fractal(study: Study, opened: Contacts) -> Figure:
 def _draw_map(
     axes: Any, contact: SimpleNamespace, field: tuple[Array, Array, Array], style: Any, label: str
 ) -> Any:
-    """Draw a field over x and y with its bar and the ellipse of Hertz."""
     x, y, values = field
     mesh = axes.pcolormesh(x, y, values.T, shading='nearest', rasterized=True, **style)
     bar = axes.get_figure().colorbar(mesh, ax=axes, location='bottom', label=label)
@@ -127,7 +126,6 @@ def _draw_map(
 
 
 def _draw_split(axes: Axes, contact: SimpleNamespace) -> None:
-    """Draw film and asperity pressure and Hertz's on the centre line."""
     axes.plot(contact.x, contact.oil_line, color=BLUE, linewidth=1.2, label='film')
     if contact.asperity_line.any():
         axes.fill_between(
@@ -171,7 +169,6 @@ def figure_smooth_load(study: Study) -> Figure:
 def _draw_series(
     figure: Figure, series: Sequence[Drawn], labels: Sequence[str], columns: int
 ) -> list[Axes]:
-    """Draw pressure and film of a series on the centre line into the first panels."""
     panels = list(figure.subplots(1, columns))
     colours = shades(len(series))
     for (_, contact), label, colour, style in zip(series, labels, colours, STYLES, strict=False):

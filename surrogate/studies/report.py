@@ -118,8 +118,19 @@ def trends(screw: Screw, law: AsperityLaw, rows: Iterable[StudyRow]) -> list[Tre
         _efficiency(screw, known, speed, 'rpm', load=tasks.EFFICIENCY_LOAD),
         _efficiency(screw, known, load, 'load', rpm=tasks.MARK_RPM),
         *_over_load(known),
-        _film(known),
     ]
+    readings: list[Reading | None] = [None, None]
+    for i, (column, rough) in enumerate((('mean_film', True), ('central_film', False))):
+        wanted: dict[str, Any] = {'kind': 'contact', 'rpm': tasks.MARK_RPM, 'load': tasks.PRELOAD}
+        line = curves.curve(known, 'load', column, rough=rough, **wanted)
+        if len(line.at):
+            film, error = NANO * line.mean[0], np.nan_to_num(NANO * line.error[0])
+            same = max(SAME * tasks.REPORTED_FILM, ERRORS * error)
+            near = abs(film - tasks.REPORTED_FILM) <= same
+            text = f'{film:.1f}{f" ± {error:.1f}" if error else ""} nm'
+            readings[i] = Reading(text, 'yes' if near else 'no')
+    name = 'central film, 502.65 mm/s, preload only'
+    every.append(Trend(name, f'{tasks.REPORTED_FILM:.0f} nm', *readings))
     return [trend for trend in every if trend.standing or trend.rolling]
 
 
@@ -199,7 +210,6 @@ def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend
 
 
 def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
-    """Return the courses under preload over speed."""
     contact, rolling = curves.contact_speeds(rows), screw_speeds(rows, 'rcs')
     note = f' (one contact, {counted(contact.draws)})'
     yield Trend(
@@ -226,7 +236,6 @@ def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
 def _efficiency(
     screw: Screw, rows: list[StudyRow], name: str, along: curves.Along, **wanted: float
 ) -> Trend:
-    """Return the course of the efficiency over speed or load."""
     reported = RISES if along == 'rpm' else RISES_THEN_FALLS
     readings = []
     for case in (tasks.STANDING, tasks.OURS):
@@ -275,27 +284,21 @@ def _over_load(rows: list[StudyRow]) -> list[Trend]:
     return [*shares, *films]
 
 
-def _film(rows: list[StudyRow]) -> Trend:
-    """Return the central film at the one point that is published, agreeing within `SAME`."""
-    readings: list[Reading | None] = [None, None]
-    for i, (column, rough) in enumerate((('mean_film', True), ('central_film', False))):
-        wanted: dict[str, Any] = {'kind': 'contact', 'rpm': tasks.MARK_RPM, 'load': tasks.PRELOAD}
-        line = curves.curve(rows, 'load', column, rough=rough, **wanted)
-        if len(line.at):
-            film, error = NANO * line.mean[0], np.nan_to_num(NANO * line.error[0])
-            near = abs(film - tasks.REPORTED_FILM) <= max(
-                SAME * tasks.REPORTED_FILM, ERRORS * error
-            )
-            text = f'{film:.1f}{f" ± {error:.1f}" if error else ""} nm'
-            readings[i] = Reading(text, 'yes' if near else 'no')
-    name = 'central film, 502.65 mm/s, preload only'
-    return Trend(name, f'{tasks.REPORTED_FILM:.0f} nm', *readings)
-
-
 def marks(screw: Screw, rows: Mapping[str, StudyRow]) -> list[Mark]:
     """Return every number that the rows allow: contacts first, then the screw."""
     known = list(rows.values())
-    every = [*_contacts(known), *_torques(known), *_statistical(screw, known)]
+    every = [*_contacts(known), *_torques(known)]
+    alone, loaded = (
+        mean_of(known, 'rcs_loaded', kind='formulas', rpm=tasks.MARK_RPM, load=load)
+        for load in (tasks.PRELOAD, tasks.LOADS[-1])
+    )
+    share = f'statistical share, loaded nut, 600 rev/min, {tasks.LOADS[-1]:g} N over preload only'
+    every.append(Mark(share, loaded / alone, '', WITH_LOAD))
+    speeds = curves.mapped(known, kind='formulas', load=tasks.EFFICIENCY_LOAD)
+    eta = curves.efficiencies(screw, speeds, 'sliding_torque')
+    name = f'efficiency, statistical share, without rolling losses, {tasks.EFFICIENCY_LOAD:g} N'
+    for i in (0, -1) if len(speeds) > 1 else ():
+        every.append(Mark(f'{name}, {speeds[i].rpm:g} rev/min', eta[i], '', ETA_RISES))
     return [mark for mark in every if math.isfinite(mark.value)]
 
 
@@ -345,18 +348,3 @@ def _torques(rows: list[StudyRow]) -> Iterator[Mark]:
             mean_of(rows, f'{torque}_torque', case=case, **wanted) for torque in (part, whole)
         )
         yield Mark(name, above / below)
-
-
-def _statistical(screw: Screw, rows: list[StudyRow]) -> Iterator[Mark]:
-    """Return what published formulas with a statistical asperity share say."""
-    alone, loaded = (
-        mean_of(rows, 'rcs_loaded', kind='formulas', rpm=tasks.MARK_RPM, load=load)
-        for load in (tasks.PRELOAD, tasks.LOADS[-1])
-    )
-    share = f'statistical share, loaded nut, 600 rev/min, {tasks.LOADS[-1]:g} N over preload only'
-    yield Mark(share, loaded / alone, '', WITH_LOAD)
-    speeds = curves.mapped(rows, kind='formulas', load=tasks.EFFICIENCY_LOAD)
-    eta = curves.efficiencies(screw, speeds, 'sliding_torque')
-    name = f'efficiency, statistical share, without rolling losses, {tasks.EFFICIENCY_LOAD:g} N'
-    for i in (0, -1) if len(speeds) > 1 else ():
-        yield Mark(f'{name}, {speeds[i].rpm:g} rev/min', eta[i], '', ETA_RISES)

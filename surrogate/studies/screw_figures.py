@@ -13,7 +13,7 @@ from functools import cache
 import math
 from pathlib import Path
 import textwrap
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -187,24 +187,21 @@ def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
     )
     limit(second, RCS_LIMIT, f'limit {RCS_LIMIT:g}')
     second.set(ylabel='share of the load [-]', yscale='log', ylim=(NO_CONTACT, 1.3))
-    _draw_film(third, screw_speeds(rows, 'central_film'))
+    over_speed(
+        third, (screw_speeds(rows, 'central_film'), 'o-', 'black', 'central film'), factor=NANO
+    )
+    label = f'reported, rough: {tasks.REPORTED_FILM:.0f} nm at {MARK_SPEED} mm/s'
+    third.plot(MARK_SPEED, tasks.REPORTED_FILM, 'D', color=VERMILION, label=label)
+    for ratio in (1, 3):  # film ratios of the published roughness
+        level = ratio * ROUGHNESS
+        third.axhline(level, color='0.4', linestyle=':', linewidth=1.0)
+        place: dict[str, Any] = {'xycoords': ('axes fraction', 'data'), 'ha': 'right'}
+        third.annotate(f'Λ = {ratio}', (0.985, level), fontsize=8, va='bottom', **place)
+    third.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
     for axes, letter in zip((first, second, third), 'abc', strict=True):
         speed_axis(axes, label=axes is third, top=axes is first)
         finish(axes, letter)
     return figure
-
-
-def _draw_film(axes: Axes, film: Curve) -> None:
-    """Draw the film, the published one, and film ratios of the published roughness."""
-    over_speed(axes, (film, 'o-', 'black', 'central film'), factor=NANO)
-    label = f'reported, rough: {tasks.REPORTED_FILM:.0f} nm at {MARK_SPEED} mm/s'
-    axes.plot(MARK_SPEED, tasks.REPORTED_FILM, 'D', color=VERMILION, label=label)
-    for ratio in (1, 3):
-        level = ratio * ROUGHNESS
-        axes.axhline(level, color='0.4', linestyle=':', linewidth=1.0)
-        place: dict[str, Any] = {'xycoords': ('axes fraction', 'data'), 'ha': 'right'}
-        axes.annotate(f'Λ = {ratio}', (0.985, level), fontsize=8, va='bottom', **place)
-    axes.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
 
 
 def figure_trends(screw: Screw, rows: Rows) -> Figure:
@@ -299,22 +296,9 @@ def _draw_loads(axes: Axes, rows: Rows) -> None:
     finish(axes, 'd', 'RCS over load', legend='upper left')
 
 
-class FineMap(NamedTuple):
-    """Entrainment speeds [mm/s], loads [N], RCS and efficiency [-] between the nodes."""
-
-    speed: Array
-    load: Array
-    rcs: Array
-    eta: Array
-
-    def line(self, axes: Axes, field: Array, values: Sequence[float], **style: Any) -> Any:
-        """Draw lines of equal values of a field."""
-        return axes.contour(self.speed, self.load, field, values, **style)
-
-
-def fine_map(screw: Screw, rows: Rows) -> FineMap:
+def fine_map(screw: Screw, rows: Rows) -> tuple[Array, Array, Array, Array]:
     """
-    Return the map between its nodes.
+    Return entrainment speeds [mm/s], loads [N], RCS and efficiency [-] between the nodes.
 
     Monotone cubics over the logarithms of speed and load, of torque and of the logarithm of RCS.
 
@@ -332,7 +316,7 @@ def fine_map(screw: Screw, rows: Rows) -> FineMap:
         return np.asarray(PchipInterpolator(np.log(loads), along, axis=0)(np.log(load)))
 
     eta = _efficiency(screw, load, between(torque))
-    return FineMap(entrainment(speed), load, np.exp(between(rcs)), eta)
+    return entrainment(speed), load, np.exp(between(rcs)), eta
 
 
 def _efficiency(screw: Screw, loads: Array, torques: Array) -> Array:
@@ -349,22 +333,22 @@ def figure_maps(screw: Screw, rows: Rows) -> Figure:
     """Return maps of RCS and efficiency, and efficiency beside constant friction (12)."""
     figure = declared_figure('12', no_contact=NO_CONTACT, friction=CONSTANT_FRICTION)
     places = figure.subplot_mosaic([['rcs', 'eta'], ['load', 'load']], height_ratios=(1.25, 1))
-    fine = fine_map(screw, rows)
-    log_rcs = np.log10(np.clip(fine.rcs, NO_CONTACT, 1))
+    speed, load, rcs, eta = fine_map(screw, rows)
+    log_rcs = np.log10(np.clip(rcs, NO_CONTACT, 1))
     powers, etas = np.linspace(np.log10(NO_CONTACT), 0, 13), np.linspace(0.4, 1.0, 13)
     red, blue = {'cmap': 'inferno_r'}, {'cmap': 'cividis', 'extend': 'min'}
     panels: tuple[tuple[Any, ...], ...] = (
-        ('rcs', 'a', 'RCS', log_rcs, powers, RCS_LIMIT, red),
-        ('eta', 'b', 'efficiency', fine.eta, etas, EFFICIENCY_LIMIT, blue),
+        ('rcs', 'a', 'RCS', rcs, log_rcs, powers, RCS_LIMIT, red),
+        ('eta', 'b', 'efficiency', eta, eta, etas, EFFICIENCY_LIMIT, blue),
     )
-    for name, letter, title, shown, levels, value, style in panels:
+    for name, letter, title, field, shown, levels, value, style in panels:
         axes = places[name]
-        filled = axes.contourf(fine.speed, fine.load, shown, levels, **style)
+        filled = axes.contourf(speed, load, shown, levels, **style)
         bar = figure.colorbar(filled, ax=axes, label=f'{title} [-]')
         if name == 'rcs':
             words = ['0', *(f'$10^{{{power}}}$' for power in range(-5, 0)), '1']
             bar.set_ticks(range(-6, 1), labels=words)
-        fine.line(axes, getattr(fine, name), [value], colors=['white'], linewidths=2.0)
+        axes.contour(speed, load, field, [value], colors=['white'], linewidths=2.0)
         _map_axes(axes, rows)
         finish(axes, letter, f'{title}, line: {value:g}')
     _draw_efficiency(places['load'], screw, rows)
@@ -400,17 +384,17 @@ def figure_zone(screw: Screw, law: AsperityLaw, rows: Rows) -> Figure:
     """Return the optimal zone in the plane of speed and load (13)."""
     figure = declared_figure('13', rcs=RCS_LIMIT, efficiency=EFFICIENCY_LIMIT)
     axes = figure.subplots()
-    fine = fine_map(screw, rows)
-    good = (fine.rcs < RCS_LIMIT) & (fine.eta >= EFFICIENCY_LIMIT)
-    axes.contourf(fine.speed, fine.load, good.astype(float), [0.5, 1.5], colors=[ZONE])
-    red, blue = {'colors': [VERMILION]}, {'colors': [BLUE], 'linestyles': ['dashed']}
-    fine.line(axes, fine.rcs, [RCS_LIMIT], linestyles=['solid'], linewidths=1.8, **red)
-    fine.line(axes, fine.eta, [EFFICIENCY_LIMIT], linewidths=1.8, **blue)
+    speed, load, rcs, eta = fine_map(screw, rows)
+    good = (rcs < RCS_LIMIT) & (eta >= EFFICIENCY_LIMIT)
+    axes.contourf(speed, load, good.astype(float), [0.5, 1.5], colors=[ZONE])
+    red: dict[str, Any] = {'colors': [VERMILION]}
+    blue: dict[str, Any] = {'colors': [BLUE], 'linestyles': ['dashed'], 'linewidths': 1.8}
+    axes.contour(speed, load, rcs, [RCS_LIMIT], linestyles=['solid'], linewidths=1.8, **red)
+    axes.contour(speed, load, eta, [EFFICIENCY_LIMIT], **blue)
     for sign in (-1, 1):
-        apart = math.exp(sign * law.deviation / SLOPE)
-        shifted = fine._replace(speed=apart * fine.speed)
-        shifted.line(axes, fine.rcs, [RCS_LIMIT], linestyles='dotted', linewidths=1, **red)
-    others = fine.line(axes, fine.eta, [0.7, 0.9, 0.95, 0.98], colors=[GREY], linewidths=0.7)
+        apart = math.exp(sign * law.deviation / SLOPE) * speed
+        axes.contour(apart, load, rcs, [RCS_LIMIT], linestyles='dotted', linewidths=1, **red)
+    others = axes.contour(speed, load, eta, [0.7, 0.9, 0.95, 0.98], colors=[GREY], linewidths=0.7)
     _map_axes(axes, rows)
     axes.clabel(others, fontsize=7, fmt='η %.2f', inline_spacing=2)
     handles = [

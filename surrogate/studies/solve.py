@@ -36,7 +36,17 @@ from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import solve_screw
 from surrogate.studies.curves import inputs_hash, StudyRow
-from surrogate.studies.tasks import CASES, OIL, SCREW, SMOOTH, STANDING, StudyTask
+from surrogate.studies.tasks import (
+    OIL,
+    RELIEVED,
+    SCREW,
+    SHORT,
+    SHORT_INLET,
+    SHORT_VISCOSITY,
+    SMOOTH,
+    STANDING,
+    StudyTask,
+)
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.tasks.table import read_table, write_table
@@ -155,7 +165,7 @@ def _contact(
 ) -> tuple[str, Numbers, Fields]:
     screw = opened.sheet
     forces = nut_forces(task.load, screw.preload)
-    force = float(normal_force(screw, forces[CASES[task.case].nut == 'relieved']))
+    force = float(normal_force(screw, forces[task.case == RELIEVED]))
     solution, surface = solve_patch(opened, lubricant, task, force, speed)
     numbers: Numbers = {'normal_force': force}
     if not solution.converged:
@@ -197,15 +207,15 @@ def solve_patch(
     of a screw stands still.
 
     """
-    case, contact = CASES[task.case], opened.geometry['screw']
+    short, contact = task.case == SHORT, opened.geometry['screw']
     oil = ContactLubricant(
-        viscosity=case.viscosity or lubricant.viscosity,
+        viscosity=SHORT_VISCOSITY if short else lubricant.viscosity,
         pressure_viscosity=lubricant.pressure_viscosity,
         eyring_stress=lubricant.eyring_stress,
     )
     settings = Settings(film_floor=lubricant.film_floor)
-    if case.inlet is not None:
-        settings = replace(settings, domain=(-case.inlet, OUTLET, SIDE), open_inlet=False)
+    if short:
+        settings = replace(settings, domain=(-SHORT_INLET, OUTLET, SIDE), open_inlet=False)
     condition = Condition(load=force, entrainment_speed=speed)
     if task.draw == SMOOTH:
         return solve_contact(contact, oil, condition, settings=settings), None
@@ -224,7 +234,6 @@ def solve_patch(
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> Fields:
-    """Return all nodes, those of the centre line, or nothing."""
     if not kind:
         return {}
     middle = int(np.argmin(np.abs(solution.y)))

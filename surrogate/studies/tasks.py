@@ -13,7 +13,6 @@ entrainment, w r_m / 2.
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import NamedTuple
 
 from surrogate.files import InputError
 
@@ -22,23 +21,11 @@ SCREW, OIL = 'nominal', 'iso_vg_68'
 SMOOTH = -1
 """Draw of a task without roughness [-]."""
 OURS, RELIEVED, SHORT, STANDING = 'ours', 'relieved nut', 'short inlet', 'standing'
-
-
-class Assumptions(NamedTuple):
-    """Nut of a contact, closed inlet in half-widths [-] and viscosity [Pa s]; None leaves ours."""
-
-    nut: str = 'loaded'
-    inlet: float | None = None
-    viscosity: float | None = None
-
-
-CASES = {
-    OURS: Assumptions(),
-    RELIEVED: Assumptions(nut='relieved'),
-    # With so little inlet the viscosity is what makes the published film of 153 nm.
-    SHORT: Assumptions(inlet=1.5, viscosity=0.113),
-}
-"""Cases of a contact by name; the roughness of a screw rolls unless its case is `STANDING`."""
+"""Cases: our assumptions and the loaded nut, or with one other: relieved nut, a short inlet,
+roughness of the screw that stands still instead of rolling."""
+SHORT_INLET, SHORT_VISCOSITY = 1.5, 0.113
+"""Closed inlet of the third case in half-widths [-], and its viscosity [Pa s]: with so little
+inlet that is what makes the published film of 153 nm."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

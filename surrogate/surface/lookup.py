@@ -237,9 +237,17 @@ class Surface:
             )
         cell = answer.speed_cell, answer.load_cell, answer.heat_cell
         fractions = answer.speed_fraction, answer.load_fraction, answer.heat_fraction
-        here = self._uncorrected_values(answer)
+        tables, across, along = self.tables, len(self.tables.heat_nodes), self.tables.rows
+        i, j, k = cell
+        fast = hermite_weights(width_of(tables.speed_nodes, i), fractions[0])
+        face = face_weights(tables.load_nodes, j, fractions[1], tables.heat_nodes, k, fractions[2])
+        node = (i * along + tables.load_rows[j]) * across + k
+        uncorrected = [
+            field(tables.values, name, node, across, along, fast, face)
+            for name in range(len(FIELDS))
+        ]
         pulls = {
-            place: make_correction(point, place, where, here, values)
+            place: make_correction(point, place, where, uncorrected, values)
             for place, where in places_of(cell, fractions, self.cells)
         }
         replaced = {_solve_of(self._pulls[place]) for place in pulls if place in self._pulls}
@@ -252,19 +260,6 @@ class Surface:
         other.__dict__.pop('tables', None)
         other.sha256 = corrected_hash(self._uncorrected, other.corrections)
         return other
-
-    def _uncorrected_values(self, point: SurfacePoint) -> list[float]:
-        """Return the fields at a place, transformed, without corrections."""
-        tables, across, along = self.tables, len(self.tables.heat_nodes), self.tables.rows
-        i, j, k = point.speed_cell, point.load_cell, point.heat_cell
-        loads = point.load_fraction, point.heat_fraction
-        fast = hermite_weights(width_of(tables.speed_nodes, i), point.speed_fraction)
-        face = face_weights(tables.load_nodes, j, loads[0], tables.heat_nodes, k, loads[1])
-        node = (i * along + tables.load_rows[j]) * across + k
-        return [
-            field(tables.values, name, node, across, along, fast, face)
-            for name in range(len(FIELDS))
-        ]
 
 
 def _solve_of(pull: Correction) -> tuple[float, float, float]:

@@ -143,7 +143,6 @@ def _torque_bounds(
 
 
 def _largest(values: Array) -> float:
-    """Return the largest known number, 0 without any."""
     known = values[np.isfinite(values)]
     return float(known.max()) if known.size else 0.0
 

@@ -96,15 +96,42 @@ def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
 
 def info_page(record: Mapping[str, Any], *, verbose: bool = False) -> str:
     """Return the record as a page; `verbose` with the formulas that leave their ranges."""
-    return '\n'.join(
-        [
-            f'{record["file"]}',
-            f'  {record["contact_onset"]["sentence"]}',
-            *_head(record),
-            *(f'  formulas     {text}' for text in record['formula_warnings'] if verbose),
-            *_quality(record),
-        ]
-    )
+    lines = [
+        f'{record["file"]}',
+        f'  {record["contact_onset"]["sentence"]}',
+        *_head(record),
+        *(f'  formulas     {text}' for text in record['formula_warnings'] if verbose),
+    ]
+    for name, words in (
+        ('onset_band', 'both'),
+        ('limit_band', 'what is not known'),
+        ('numerical_band', 'the numerics'),
+    ):
+        if record[name] is not None:
+            low, high = record[name]
+            lines.append(
+                f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, '
+                f'by {words}'
+            )
+    if record['accuracy_reached'] is not None:
+        lines.append(
+            '  accuracy     the worst held-out point has '
+            f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
+        )
+    lines += [f'  {line}' for line in march_lines(record['march'] or {})]
+    lines.append('  measured interpolation error                    max         p95')
+    for name, error in record['errors'].items():
+        lines.append(f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}')
+    if record['spreads']:
+        heads = 'deviation: median, max    of the mean'
+        lines.append(f'  over strips of the raceway               {heads}')
+    for name, spread in record['spreads'].items():
+        kinds = [spread[kind][part] for kind in ('std', 'stderr') for part in ('median', 'max')]
+        numbers = '  '.join(f'{value:<10.3g}' for value in kinds).rstrip()
+        lines.append(f'    {_label(name):36} {numbers}')
+    lines.append('  provenance (not hashed)')
+    lines += [f'    {name:12} {value}' for name, value in record['provenance'].items()]
+    return '\n'.join(lines)
 
 
 def _label(name: str) -> str:
@@ -140,37 +167,6 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     yield '  cells        {} x {} x {}'.format(*record['cells']) + (
         f', {record["masked_cells"]} masked'
     )
-
-
-def _quality(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what is known of the accuracy, errors, spreads over strips, and the provenance."""
-    for name, words in (
-        ('onset_band', 'both'),
-        ('limit_band', 'what is not known'),
-        ('numerical_band', 'the numerics'),
-    ):
-        if record[name] is not None:
-            low, high = record[name]
-            yield (
-                f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, '
-                f'by {words}'
-            )
-    if record['accuracy_reached'] is not None:
-        yield (
-            '  accuracy     the worst held-out point has '
-            f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
-        )
-    yield from (f'  {line}' for line in march_lines(record['march'] or {}))
-    yield '  measured interpolation error                    max         p95'
-    for name, error in record['errors'].items():
-        yield f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
-    if record['spreads']:
-        yield '  over strips of the raceway               deviation: median, max    of the mean'
-    for name, spread in record['spreads'].items():
-        kinds = [spread[kind][part] for kind in ('std', 'stderr') for part in ('median', 'max')]
-        yield f'    {_label(name):36} ' + '  '.join(f'{value:<10.3g}' for value in kinds).rstrip()
-    yield '  provenance (not hashed)'
-    yield from (f'    {name:12} {value}' for name, value in record['provenance'].items())
 
 
 def march_lines(march: Mapping[str, Any]) -> Iterator[str]:

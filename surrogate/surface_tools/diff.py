@@ -43,6 +43,12 @@ def diff_record(first: SurfaceData, second: SurfaceData) -> dict[str, Any]:
             raise SurfaceError(f'the surfaces have no {name.replace("_", " ")} in common')
         common.append((low, high))
     ranges = common[0], common[1], common[2]
+    slow, fast = (math.log(speed) for speed in ranges[0])
+    # The exponential rounds, and an end that is passed by a rounding has no answer.
+    speeds = np.clip(np.exp(np.linspace(slow, fast, SPEEDS)), *ranges[0]).tolist()
+    loads = _middles(first.load, second.load, ranges[1])
+    kelvins = _middles(first.temperature, second.temperature, ranges[2])
+    lattice = [(w, force, kelvin) for kelvin in kelvins for force in loads for w in speeds]
     return {
         'sha256': [surface.sha256 for surface in surfaces],
         'inputs': list(_differences(first.header, second.header)),
@@ -53,7 +59,7 @@ def diff_record(first: SurfaceData, second: SurfaceData) -> dict[str, Any]:
         'common_speed_rad_s': list(ranges[0]),
         'common_load_N': list(ranges[1]),
         'common_temperature_K': list(ranges[2]),
-        **_compare_fields(*surfaces, _lattice(first, second, ranges)),
+        **_compare_fields(*surfaces, lattice),
         'zone': _compare_zones(*surfaces, ranges),
     }
 
@@ -75,7 +81,7 @@ def _differences(first: Any, second: Any, where: str = '') -> Iterator[dict[str,
 
 
 def _compare_fields(
-    first: Surface, second: Surface, lattice: Iterator[tuple[float, float, float]]
+    first: Surface, second: Surface, lattice: list[tuple[float, float, float]]
 ) -> dict[str, Any]:
     """Return largest and 95th percentile of the difference per field, and where it is largest."""
     points, one_sided = [], 0
@@ -96,18 +102,6 @@ def _compare_fields(
         'answered_by_one_only': one_sided,
         'fields': {name: _summary(gap, points) for name, gap in gaps.items()},
     }
-
-
-def _lattice(
-    first: SurfaceData, second: SurfaceData, ranges: Ranges
-) -> Iterator[tuple[float, float, float]]:
-    """Yield points in every cell of both surfaces along load and temperature, and at the ends."""
-    slow, fast = (math.log(speed) for speed in ranges[0])
-    # The exponential rounds, and an end that is passed by a rounding has no answer.
-    speeds = np.clip(np.exp(np.linspace(slow, fast, SPEEDS)), *ranges[0]).tolist()
-    loads = _middles(first.load, second.load, ranges[1])
-    kelvins = _middles(first.temperature, second.temperature, ranges[2])
-    yield from ((w, force, kelvin) for kelvin in kelvins for force in loads for w in speeds)
 
 
 def _middles(first: Array, second: Array, ends: tuple[float, float]) -> list[float]:
@@ -244,6 +238,5 @@ def diff_page(record: Mapping[str, Any], sentences: list[str]) -> str:
 
 
 def _short(value: Any) -> str:
-    """Return a value of a header as text, cut where it would fill lines."""
     text = str(value)
     return text if len(text) <= LONGEST else f'{text[:LONGEST]} ...'

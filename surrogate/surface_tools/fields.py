@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names and units of the fields of a surface, for pages, tables, files and pictures."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from surrogate.surface.fields import FIELDS
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FieldText:
+class FieldText(NamedTuple):
     """How a field is written out: key in records and tables, unit in SI (empty: none), words."""
 
     key: str
@@ -22,28 +21,18 @@ class FieldText:
 
 
 FIELD_TEXTS = {
-    'friction_torque': FieldText(
-        key='friction_torque_Nm', unit='N m', words='torque lost to friction'
-    ),
-    'rcs': FieldText(
-        key='rcs', unit='', words='share of the load at punctured film, worst contact'
-    ),
+    'friction_torque': FieldText('friction_torque_Nm', 'N m', 'torque lost to friction'),
+    'rcs': FieldText('rcs', '', 'share of the load at punctured film, worst contact'),
     'asperity_share': FieldText(
-        key='asperity_share', unit='', words='share of the load on asperities, worst contact'
+        'asperity_share', '', 'share of the load on asperities, worst contact'
     ),
-    'film_ratio': FieldText(
-        key='film_ratio', unit='', words='film ratio Lambda of the thinnest contact'
-    ),
-    'central_film': FieldText(
-        key='central_film_m', unit='m', words='central film of the thinnest contact'
-    ),
-    'minimum_film': FieldText(
-        key='minimum_film_m', unit='m', words='minimum film of the thinnest contact'
-    ),
+    'film_ratio': FieldText('film_ratio', '', 'film ratio Lambda of the thinnest contact'),
+    'central_film': FieldText('central_film_m', 'm', 'central film of the thinnest contact'),
+    'minimum_film': FieldText('minimum_film_m', 'm', 'minimum film of the thinnest contact'),
     'friction_coefficient': FieldText(
-        key='friction_coefficient', unit='', words='mean coefficient of sliding friction'
+        'friction_coefficient', '', 'mean coefficient of sliding friction'
     ),
-    'max_pressure': FieldText(key='max_pressure_Pa', unit='Pa', words='largest contact pressure'),
+    'max_pressure': FieldText('max_pressure_Pa', 'Pa', 'largest contact pressure'),
 }
 assert tuple(FIELD_TEXTS) == FIELDS
 

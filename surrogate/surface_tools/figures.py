@@ -98,8 +98,6 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
         _draw_regime,
         _draw_error,
     ]
-    if np.isfinite(part.fields['rcs_std']).any():
-        panels[4:5] = [_draw_rcs_spread]
     rows = len(panels) // 2
     figure = new_figure(7.2, 1.0 + 2.9 * rows)
     figure.suptitle(
@@ -136,7 +134,6 @@ def _map(
 
 
 def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
-    """Draw the lines of some limits, where the values reach them; several are labelled."""
     if _reaches(values, levels):
         lines = axes.contour(part.speed, part.load, values, levels=levels, **LIMIT)
         if len(levels) > 1:
@@ -202,6 +199,11 @@ def _classes(
 
 
 def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
+    spread = part.fields['rcs_std']
+    if np.isfinite(spread).any():
+        # Where it is known, how far strips differ takes the place of the regime.
+        _log_map(figure, axes, part, spread, 'RCS over strips', 'standard deviation [-]')
+        return
     ratio = part.fields['film_ratio']
     bands = np.where(np.isfinite(ratio), np.digitize(ratio, FILM_RATIO_LIMITS), np.nan)
     low, high = FILM_RATIO_LIMITS
@@ -257,8 +259,3 @@ def _log_map(
     norm = LogNorm(1e-3 * top, top)
     least = np.maximum(values, 1e-3 * top)
     _map(figure, axes, part, least, title, label, norm=norm, cmap=LESS_IS_GOOD)
-
-
-def _draw_rcs_spread(figure: Figure, axes: Axes, part: Slice) -> None:
-    values = part.fields['rcs_std']
-    _log_map(figure, axes, part, values, 'RCS over strips', 'standard deviation [-]')

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Answers of a surface for operating points: a record, a page, and a table for a table."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 import csv
 import io
 import math
@@ -56,19 +56,6 @@ def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
     }
 
 
-def _drag_line(record: dict[str, Any]) -> Iterator[str]:
-    """Yield efficiency and torque with a typical drag, where it is not identified."""
-    if f'{DRAG_KEY}_low_drag_Nm' not in record:
-        return
-    torque, share = (
-        '{1:.4g} ({0:.3g} to {2:.3g})'.format(
-            *sorted(record[f'{DRAG_KEY}_{end}_{key}'] for end in DRAGS)
-        )
-        for key in ('friction_torque_Nm', 'efficiency')
-    )
-    yield f'  with typical drag    efficiency {share}, friction torque {torque} N m'
-
-
 def _reason(surface: Surface, validity: Validity) -> str:
     """Return why there are no numbers, with the limit that was passed; empty when there are."""
     slow, fast = (speed / RPM for speed in surface.speed_range)
@@ -96,12 +83,21 @@ def query_page(record: dict[str, Any]) -> str:
     lines += [_line('efficiency', '-', record, 'efficiency', 'efficiency')]
     for name, text in FIELD_TEXTS.items():
         lines.append(_line(name.replace('_', ' '), text.unit or '-', record, text.key, name))
+    drag = []
+    if f'{DRAG_KEY}_low_drag_Nm' in record:
+        torque, share = (
+            '{1:.4g} ({0:.3g} to {2:.3g})'.format(
+                *sorted(record[f'{DRAG_KEY}_{end}_{key}'] for end in DRAGS)
+            )
+            for key in ('friction_torque_Nm', 'efficiency')
+        )
+        drag.append(f'  with typical drag    efficiency {share}, friction torque {torque} N m')
     driving = ', the load drives the screw' if record['back_driving'] else ''
     return '\n'.join(
         [
             *lines,
             f'  driving torque       {record["driving_torque_Nm"]:.4g} N m{driving}',
-            *_drag_line(record),
+            *drag,
             f'  regime               {record["regime"]}',
             f'  worst contact        {record["worst_contact"]}',
         ]

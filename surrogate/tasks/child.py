@@ -267,7 +267,6 @@ class Workers:
                 worker.kill()
 
     def _begin(self) -> None:
-        """Let free workers begin the tasks that wait."""
         while self._waiting and (self._idle or len(self._names) < self._number):
             name, frame = self._waiting.popleft()
             try:

@@ -104,7 +104,6 @@ class Progress:
         self._print(f'\r[{drawn}] {self._text()}\x1b[K', end)
 
     def _part(self) -> float:
-        """Return how far the work is [-]."""
         return self._done / max(self._total, 1) if self._share is None else self._share
 
     def _is_due(self) -> bool:

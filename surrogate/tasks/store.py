@@ -167,7 +167,17 @@ class TaskStore:
             elif code == sqlite3.SQLITE_NOTADB or isinstance(error, OtherVersion):
                 sentence = f'not a store of results, {clean} it'
             else:
-                self._rescue(error)
+                # Damaged: it is set aside, and the results that can be read are kept.
+                sound: list[KeptResult] = []
+                with contextlib.suppress(sqlite3.Error):
+                    for row in self._store.database.execute('SELECT * FROM results'):
+                        kept = readable(RESULTS, [row])
+                        sound += [result for _, result in kept if result.work == self.work]
+                self._store.let_go()
+                print(set_file_aside(self.path, error), file=sys.stderr)
+                self._store.connect()
+                with self._store.transaction():
+                    self._store.put(RESULTS, sound)
                 return
             raise SurfaceError(f'{self.path}: {sentence}') from None
         except OSError as error:
@@ -178,15 +188,3 @@ class TaskStore:
                 f'{self.path}: results of {others[0][1].work}, this program makes {self.work}; '
                 f'{clean} them'
             )
-
-    def _rescue(self, error: Exception) -> None:
-        """Set a damaged file aside, and go on with those results that can be read."""
-        sound: list[KeptResult] = []
-        with contextlib.suppress(sqlite3.Error):
-            for row in self._store.database.execute('SELECT * FROM results'):
-                sound += [kept for _, kept in readable(RESULTS, [row]) if kept.work == self.work]
-        self._store.let_go()
-        print(set_file_aside(self.path, error), file=sys.stderr)
-        self._store.connect()
-        with self._store.transaction():
-            self._store.put(RESULTS, sound)

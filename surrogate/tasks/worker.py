@@ -133,7 +133,12 @@ def plain_result(result: Any) -> Any:
 def main() -> None:
     """Run the tasks that come until the input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _unwind)
+
+    def unwind(number: int, frame: Any) -> None:  # what a task has half made is removed
+        signal.signal(number, signal.SIG_IGN)  # nothing interrupts the removal
+        raise SystemExit(1)
+
+    signal.signal(signal.SIGTERM, unwind)
     niceness, memory = map(int, sys.argv[1:])
     os.nice(niceness)
     if memory:
@@ -177,12 +182,6 @@ def _listen(frames: TextIO, requests: 'queue.SimpleQueue[Frame | None]') -> None
     signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
     time.sleep(UNWIND)  # the process may end meanwhile
     os._exit(1)
-
-
-def _unwind(number: int, frame: Any) -> None:
-    """End the process in order: what a task has half made is removed."""
-    signal.signal(number, signal.SIG_IGN)  # nothing interrupts the removal
-    raise SystemExit(1)
 
 
 if __name__ == '__main__':

@@ -181,8 +181,25 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
 
 def _client(distributed: Any, cluster: Any) -> Any:
     """Return a client of a cluster that has a worker; raises InputError for any other."""
-    if isinstance(cluster, str):
-        _check_scheduler(distributed, cluster)
+    if isinstance(cluster, str):  # a client would wait long for a scheduler that is not there
+
+        async def ask() -> Any:
+            async with distributed.rpc(cluster) as scheduler:
+                return await scheduler.identity()
+
+        try:
+            answer = asyncio.run(asyncio.wait_for(ask(), PATIENCE)).get('type')
+        except ValueError as error:
+            answer = str(error)
+        except (OSError, TimeoutError):
+            answer = f'nothing answers within {PATIENCE:g} s'
+        except Exception:  # what answers at a wrong port may say anything
+            answer = 'something else answers there'
+        if answer != 'Scheduler':
+            raise InputError(
+                f'--dask: no scheduler at {cluster} ({answer}), allowed is tcp://HOST:PORT or '
+                f'{LOCAL}'
+            )
     client = distributed.Client(cluster, timeout=PATIENCE, set_as_default=False)
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
@@ -190,24 +207,3 @@ def _client(distributed: Any, cluster: Any) -> Any:
         client.close()
         raise InputError(f'--dask: the scheduler at {cluster} has no workers') from None
     return client
-
-
-def _check_scheduler(distributed: Any, address: str) -> None:
-    """Ask who is there: a client would wait long for a scheduler that is not."""
-
-    async def ask() -> Any:
-        async with distributed.rpc(address) as there:
-            return await there.identity()
-
-    try:
-        answer = asyncio.run(asyncio.wait_for(ask(), PATIENCE)).get('type')
-    except ValueError as error:
-        answer = str(error)
-    except (OSError, TimeoutError):
-        answer = f'nothing answers within {PATIENCE:g} s'
-    except Exception:  # what answers at a wrong port may say anything
-        answer = 'something else answers there'
-    if answer != 'Scheduler':
-        raise InputError(
-            f'--dask: no scheduler at {address} ({answer}), allowed is tcp://HOST:PORT or {LOCAL}'
-        )

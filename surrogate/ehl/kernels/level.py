@@ -208,7 +208,27 @@ def apply_lines(level: GridLevel, x: Array, out: Array) -> None:
     if count == 0:
         _solve_total(level, rhs, total)
     else:
-        _apply_contact_lines(level, x, out)
+        mixed = work.scratch[2]
+        mixed[:] = rhs
+        flat = mixed.reshape(size)
+        for k in range(count):
+            flat[nodes[k]] = x[size + k]
+        _solve_total(level, mixed, work.total)
+        solve_film_lines(
+            work.film_bands,
+            level.contact,
+            level.box,
+            rhs,
+            work.total,
+            FILM_STEPS,
+            symmetric,
+            work.scratch,
+            work.film,
+        )
+        out[:size] = work.total.reshape(size)
+        flat = work.film.reshape(size)
+        for k in range(count):
+            out[size + k] = flat[nodes[k]]
     if symmetric or level.space.periodic:
         total[:, 0] = 0
     if level.space.periodic:
@@ -236,34 +256,6 @@ def _solve_total(level: GridLevel, rhs: Array, total: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _apply_contact_lines(level: GridLevel, x: Array, out: Array) -> None:
-    work, nodes, symmetric = level.work, level.nodes, level.space.symmetric
-    nx, ny = work.total.shape
-    size, count = nx * ny, nodes.size
-    rhs, mixed, total, film = x[:size].reshape(nx, ny), work.scratch[2], work.total, work.film
-    mixed[:] = rhs
-    flat = mixed.reshape(size)
-    for k in range(count):
-        flat[nodes[k]] = x[size + k]
-    _solve_total(level, mixed, total)
-    solve_film_lines(
-        work.film_bands,
-        level.contact,
-        level.box,
-        rhs,
-        total,
-        FILM_STEPS,
-        symmetric,
-        work.scratch,
-        film,
-    )
-    out[:size] = total.reshape(size)
-    flat = film.reshape(size)
-    for k in range(count):
-        out[size + k] = flat[nodes[k]]
-
-
-@njit(cache=True, error_model='numpy')
 def precondition(level: GridLevel, x: Array, out: Array) -> None:
     """Apply the lines and eliminate the border: load row and approach column."""
     nx, ny = level.work.total.shape
@@ -275,24 +267,6 @@ def precondition(level: GridLevel, x: Array, out: Array) -> None:
     for k in range(size + count):
         out[k] -= approach * border[k]
     out[size + count] = approach
-
-
-@njit(cache=True, error_model='numpy')
-def _factor_thick_film(level: GridLevel) -> None:
-    """Factor the bands of thick film; a symmetric grid has coarser ones instead."""
-    work, few = level.work, level.nodes.size < FEW_IN_CONTACT * level.contact.size
-    work.used[2] = 0
-    if (
-        few
-        and not level.space.symmetric
-        and mark_thick_film(
-            work.by_pressure, work.by_gap, level.contact, level.sizes, level.space.near, work.thick
-        )
-    ):
-        if level.space.periodic:
-            repeat(work.thick)
-        factor_bands(work.by_pressure, work.thick, work.thick_rows, work.thick_lower)
-        work.used[2] = 1
 
 
 @njit(cache=True, error_model='numpy')
@@ -312,7 +286,20 @@ def factor(level: GridLevel) -> None:
     )
     if count > 0:
         film_factors(work.by_pressure, level.contact, work.film_bands)
-    _factor_thick_film(level)
+    work.used[2] = 0
+    # A symmetric grid has coarser bands instead of those of thick film.
+    few = count < FEW_IN_CONTACT * level.contact.size
+    if (
+        few
+        and not level.space.symmetric
+        and mark_thick_film(
+            work.by_pressure, work.by_gap, level.contact, level.sizes, level.space.near, work.thick
+        )
+    ):
+        if level.space.periodic:
+            repeat(work.thick)
+        factor_bands(work.by_pressure, work.thick, work.thick_rows, work.thick_lower)
+        work.used[2] = 1
     raised = np.zeros(size + count + 1, work.border.dtype)
     column = raised[:size].reshape(nx, ny)
     for i in range(1, nx - 1):

@@ -139,7 +139,18 @@ def solve_lines(
         count = (rhs.shape[1] - kind) // 2
         coupled = started or step > 0
         if coupled:
-            _gather(total[1 - kind], kind, count, work[4], work[5])
+            # The south neighbour and the sum of both of each line; none of the first.
+            other, south, pair = total[1 - kind], work[4], work[5]
+            for i in range(1, rhs.shape[0] - 1):
+                if kind == 1:
+                    for q in range(count):
+                        south[i, q] = other[i, q]
+                        pair[i, q] = other[i, q] + other[i, q + 1]
+                else:
+                    south[i, 0] = pair[i, 0] = 0
+                    for q in range(1, count):
+                        south[i, q] = other[i, q - 1]
+                        pair[i, q] = other[i, q - 1] + other[i, q]
         _solve_kind(
             bands[kind], sides[kind], known[kind], count, coupled, work[4], work[5], total[kind]
         )
@@ -184,21 +195,6 @@ def join(kinds: Array, values: Array) -> None:
             values[i, 2 * q + 1] = odd[i, q]
         if ny % 2 == 1:
             values[i, ny - 1] = even[i, ny // 2]
-
-
-@njit(cache=True, error_model='numpy')
-def _gather(other: Array, kind: int, count: int, south: Array, pair: Array) -> None:
-    """Set the south neighbour and the sum of both of the lines of a kind; none of the first."""
-    for i in range(1, other.shape[0] - 1):
-        if kind == 1:
-            for q in range(count):
-                south[i, q] = other[i, q]
-                pair[i, q] = other[i, q] + other[i, q + 1]
-        else:
-            south[i, 0] = pair[i, 0] = 0
-            for q in range(1, count):
-                south[i, q] = other[i, q - 1]
-                pair[i, q] = other[i, q - 1] + other[i, q]
 
 
 @njit(cache=True, error_model='numpy')

@@ -195,32 +195,6 @@ def carried_mass(
 
 
 @njit(cache=True, error_model='numpy', inline='always')
-def _pass_on(
-    film: Array,
-    i: int,
-    j: int,
-    order: float,
-    fading: float,
-    residual: Array,
-    by_pressure: Array,
-    by_gap: Array,
-) -> None:
-    """Let the mass that node (i, j) carries downstream leave it and enter the next [-]."""
-    mass, in_p, in_h, in_p1, in_h1 = carried_mass(film, i, j, order, fading)
-    residual[i, j] += mass
-    by_pressure[0, i, j] += in_p
-    by_pressure[1, i, j] += in_p1
-    by_gap[0, i, j] += in_h
-    by_gap[1, i, j] += in_h1
-    k = i + 1
-    residual[k, j] -= mass
-    by_pressure[1, k, j] -= in_p
-    by_pressure[5, k, j] -= in_p1
-    by_gap[1, k, j] -= in_h
-    by_gap[5, k, j] -= in_h1
-
-
-@njit(cache=True, error_model='numpy', inline='always')
 def _push(
     film: Array,
     i: int,
@@ -351,7 +325,20 @@ def reynolds_rows(
     by_gap[:] = 0.0
     for i in range(nx - 1):
         for j in range(1, ny - 1):
-            _pass_on(film, i, j, order if i > 1 else 1.0, fading, residual, by_pressure, by_gap)
+            # The mass that node (i, j) carries downstream leaves it and enters the next.
+            here = order if i > 1 else 1.0
+            mass, in_p, in_h, in_p1, in_h1 = carried_mass(film, i, j, here, fading)
+            k = i + 1
+            residual[i, j] += mass
+            by_pressure[0, i, j] += in_p
+            by_pressure[1, i, j] += in_p1
+            by_gap[0, i, j] += in_h
+            by_gap[1, i, j] += in_h1
+            residual[k, j] -= mass
+            by_pressure[1, k, j] -= in_p
+            by_pressure[5, k, j] -= in_p1
+            by_gap[1, k, j] -= in_h
+            by_gap[5, k, j] -= in_h1
     flow_rows(pressure, film, mobility, aspect, fading > 0.0, inlet, residual, by_pressure, by_gap)
     clear_border(residual, by_pressure, by_gap)
 

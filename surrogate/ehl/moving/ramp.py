@@ -159,7 +159,17 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]
     speeds = np.array([step.speed for place in steps[:1] for step in place])
-    films, losses = _smooth_at(march, speeds)
+    films = losses = np.empty(0)
+    if march.path is not None and speeds.size:  # of the smooth contact at these speeds
+        order, smooth = np.argsort(march.path.speeds), march.smooth_measures()
+        knots = np.log(march.path.speeds)[order]
+        films, losses = (
+            np.exp(np.interp(np.log(speeds), knots, np.log(values)[order]))
+            for values in (
+                [measure.centre_film for measure in smooth],
+                [measure.rolling_loss for measure in smooth],
+            )
+        )
     return SpeedRamp(
         status=march.status,
         speeds=speeds,
@@ -176,23 +186,6 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
 
 def _steps_of_transit(march: March) -> float:
     return 2 / (march.settings.stride * march.grid.dx)
-
-
-def _smooth_at(march: March, speeds: Array) -> tuple[Array, Array]:
-    """Return central films [m] and rolling losses [N] of the smooth contact at some speeds."""
-    if march.path is None or not speeds.size:
-        return np.empty(0), np.empty(0)
-    order, smooth = np.argsort(march.path.speeds), march.smooth_measures()
-    knots, films, losses = (
-        np.log(values)[order]
-        for values in (
-            march.path.speeds,
-            [measure.centre_film for measure in smooth],
-            [measure.rolling_loss for measure in smooth],
-        )
-    )
-    wanted = np.log(speeds)
-    return np.exp(np.interp(wanted, knots, films)), np.exp(np.interp(wanted, knots, losses))
 
 
 def _over_places(places: Sequence[Sequence[Measure]], name: str) -> Array:

@@ -112,13 +112,9 @@ class March:
                     return
                 if moved > run_in:
                     self.places[-1].append(self.gauge.measure(step))
-                    if self._touches(self.places[-1]):
+                    last = [measure.rcs for measure in self.places[-1][slice(-self.turn, None)]]
+                    if len(last) == self.turn and sum(last) >= self.enough * self.turn:
                         break
-
-    def _touches(self, steps: list[Measure]) -> bool:
-        """Return True if RCS over the last turn is as much as is wanted."""
-        last = [step.rcs for step in steps[slice(-self.turn, None)]]
-        return len(last) == self.turn and sum(last) >= self.enough * self.turn
 
     def _moves(self, transits: float) -> range:
         """Return by how many nodes the raceway has moved on at each step at a place [-]."""

@@ -72,6 +72,15 @@ class Gauge:
         hard = total > HARDNESS / case.hertz_pressure
         core = self._distance < CORE
         inside = gap[self._distance < 1.0] * unit
+        # The Eyring traction of the film.
+        pressure, oil = outcome.state.film_pressure, case.lubricant
+        wet = ~punctured & (pressure > 0) & (grid.weights > 0)
+        viscosity = viscosity_of(oil, pressure[wet] * case.hertz_pressure)
+        slip = self.slide_roll_ratio * step.speed
+        stress = oil.eyring_stress * np.arcsinh(
+            viscosity * slip / (oil.eyring_stress * gap[wet] * unit)
+        )
+        area = grid.dx * grid.dy * case.semi_axis_x**2
         return Measure(
             speed=step.speed,
             rcs=grid.integral(touching) / case.load,
@@ -81,7 +90,7 @@ class Gauge:
             least_film=float(inside.min()),
             max_pressure=float(total.max()) * case.hertz_pressure,
             hard_share=grid.integral(np.where(hard, total, 0.0)) / case.load,
-            film_traction=self._film_traction(step, gap, punctured),
+            film_traction=float(stress.sum()) * area / case.condition.load,
             rolling_loss=self._rolling_loss(step),
             moment_loss=-0.5
             * (grid.integral(total * grid.x[:, None]) + step.stored)
@@ -90,19 +99,6 @@ class Gauge:
             thin_shares=np.array([np.mean(inside < film) for film in THIN_FILMS]),
             rcs_along=touching @ grid.weights / grid.dx / case.load,
         )
-
-    def _film_traction(self, step: Step, gap: Array, punctured: NDArray[np.bool_]) -> float:
-        """Return the Eyring traction of the film over the load [-]."""
-        case, oil = self.case, self.case.lubricant
-        pressure = step.outcome.state.film_pressure
-        wet = ~punctured & (pressure > 0) & (self.grid.weights > 0)
-        viscosity = viscosity_of(oil, pressure[wet] * case.hertz_pressure)
-        slip = self.slide_roll_ratio * step.speed
-        stress = oil.eyring_stress * np.arcsinh(
-            viscosity * slip / (oil.eyring_stress * gap[wet] * case.height_unit)
-        )
-        area = self.grid.dx * self.grid.dy * case.semi_axis_x**2
-        return float(stress.sum()) * area / case.condition.load
 
     def _rolling_loss(self, step: Step) -> float:
         """Return the Poiseuille dissipation over twice the entrainment speed [N]."""
