@@ -230,7 +230,7 @@ def is_of_days(extremes: Array) -> bool:
 
 def is_of_a_day(extremes: Array) -> bool:
     """Tell whether the least and the most of times [s] are those of one day."""
-    return bool((extremes >= 0.0).all() and (extremes < DAY).all())
+    return bool((extremes >= 0.0).all() and (extremes <= DAY).all())
 
 
 class Midnights:

@@ -16,7 +16,9 @@ import functools
 import itertools
 import math
 import re
+from typing import Any
 
+from ballscrew_monitor.recordings.tables.cell_units import is_amount
 from ballscrew_monitor.recordings.tables.layouts import (
     COLUMN,
     Format,
@@ -33,6 +35,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     unit_of_period,
 )
 from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.numerals import plain_numeral
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
@@ -141,6 +144,20 @@ class Head:
     machine: Mapping[str, Statement] = dataclasses.field(default_factory=dict)
     factors: str = ''
 
+    def renamed(self, names: Mapping[str, str]) -> 'Head':
+        """Return it with other names of some columns."""
+
+        def of_new(held: Mapping[str, Any]) -> dict[str, Any]:
+            return {names.get(name, name): value for name, value in held.items()}
+
+        return dataclasses.replace(
+            self,
+            names=tuple(names.get(name, name) for name in self.names),
+            symbols=of_new(self.symbols),
+            periods=of_new(self.periods),
+            labelled=frozenset(names.get(name, name) for name in self.labelled),
+        )
+
     def surplus(self, row: int, cells: int) -> str:
         """Return what is wrong with a row of more cells than there are columns."""
         return _surplus(row, cells, len(self.names), self.separator)
@@ -186,6 +203,13 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     if not block.score:
         return _stated_head(lines, Layout(), blocks)
     return _Above(lines[: block.begin], block).head(lines[block.begin].row)
+
+
+def cells_of(lines: Sequence[Line], head: Head) -> dict[str, list[str]]:
+    """Return the cells of the columns of a table in its first lines."""
+    rows = (_cells(line, head.separator) for line in lines[head.begin :])
+    whole = [row for row in rows if len(row) == len(head.names)]
+    return dict(zip(head.names, map(list, zip(*whole, strict=True)), strict=False))
 
 
 def holds_numbers(lines: Sequence[Line], fewest: int) -> bool:
@@ -234,7 +258,7 @@ def _kind(cell: str) -> str:
     if not cell or cell.lower() in NO_NUMBER:
         return '-'
     if any(letter.isdigit() for letter in cell) and (
-        NUMBER.fullmatch(cell) or TIME.fullmatch(cell)
+        NUMBER.fullmatch(plain_numeral(cell)) or TIME.fullmatch(cell) or is_amount(cell)
     ):
         return 'n'
     return 'x'
@@ -310,7 +334,7 @@ class _Block:
 
 def _number(cell: str) -> float:
     try:
-        return float(cell.replace(',', '.'))
+        return float(plain_numeral(cell).replace(',', '.'))
     except ValueError:
         return math.nan
 

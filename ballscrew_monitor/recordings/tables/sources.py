@@ -8,7 +8,7 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import contextlib
 import csv
 import dataclasses
@@ -19,6 +19,7 @@ import re
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.tables import foreign, heads
+from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainly
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.marked import marked
@@ -112,6 +113,15 @@ class Source:
         """Return it with the columns that are marked read by their marks."""
         return dataclasses.replace(self, read=marked(self.read, marks)) if marks else self
 
+    def plain(self, cells: Mapping[str, Sequence[str]]) -> 'Source':
+        """Return it with plain cells where some cells of a column show that they are none."""
+        with _findable(self.path):
+            columns = plain_columns(cells)
+        if not columns:
+            return self
+        head = self.head.renamed({name: column.name for name, column in columns.items()})
+        return dataclasses.replace(self, head=head, read=plainly(self.read, columns))
+
     def unread(self, columns: Collection[str]) -> dict[str, str]:
         """Return why parts of the file are not read: also groups with none of the columns."""
         if not self.is_grouped:
@@ -163,9 +173,12 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
         _check_columns(path, signals.frame.width)
         frame = signals.frame.lazy()
         source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
-        return dataclasses.replace(
+        source = dataclasses.replace(
             source, left_out=signals.left_out, is_grouped=kind in foreign.GROUPED
         )
+        texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
+        cells = dict(zip(signals.frame.columns, source.names(), strict=True))
+        return source.plain({cells[name]: column.to_list() for name, column in texts.items()})
     return _text(path, layout, _Text.of(path, head))
 
 
@@ -270,7 +283,8 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
     source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
-    return dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
+    source = dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
+    return source.plain(heads.cells_of(lines, head))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -395,7 +409,8 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 row += cells.height
                 yield cells.rename(called).select(names)
 
-    return Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+    source = Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+    return source.plain(heads.cells_of(lines, head))
 
 
 def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
