@@ -47,6 +47,12 @@ def mark_of_none(values: Array) -> float:
     return math.nan
 
 
+def counts_rows(values: Array) -> bool:
+    """Return True if values are whole numbers that count the rows."""
+    whole = len(values) > 1 and bool((values == np.floor(values)).all())
+    return whole and bool((np.diff(values) == 1.0).all())
+
+
 def is_silent(values: Array) -> bool:
     """Tell whether there is nothing but zeros."""
     return not np.nan_to_num(values).any()
