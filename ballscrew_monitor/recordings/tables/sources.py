@@ -356,7 +356,9 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
         head = heads.find_head(lines, layout)
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
-    empty = [name for name, column in zip(head.names, frame) if column.null_count() == len(column)]
+    empty = [  # but for the first cell, from which a formula may count on
+        name for name, column in zip(head.names, frame) if column.null_count() >= len(column) - 1
+    ]
     if empty and holds_formulas_alone(path):
         raise InputError(
             f'log {path}: column {short(repr(empty[0]))} holds formulas without their values: '

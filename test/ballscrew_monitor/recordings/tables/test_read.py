@@ -89,7 +89,6 @@ def test_an_optional_column_whose_cells_hold_several_values_is_left_out(cells, t
     [
         ('t,v,F\n' + 9 * '0,01,1,5,2,5\n', 'decimal_comma'),
         ('t;v\n' + 5 * '1;2\n' + '1;2;3\n' + 5 * '1;2\n', 'one_more'),
-        ('t;v\n' + 3000 * '1;2\n' + '1;2;1;2\n3\n', 'late'),
         ('t;v\n' + 8 * '1;2\n2\n', 'fewer'),
     ],
 )
