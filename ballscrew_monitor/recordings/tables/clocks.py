@@ -52,6 +52,8 @@ HOURS = (
     '%H%M%S%.f',
 )
 """Times of a day; the last one stands behind a date alone."""
+LATE_HOURS = r'^\s*(2[4-9]|[3-9]\d|[1-9]\d\d):\d\d:\d\d'
+"""Hours of a clock that goes on after midnight, and of one that counts from a begin."""
 MINUTES = '%M:%S.%f'
 """Minutes and seconds of an hour, as a spreadsheet shows a time in tenths of seconds."""
 MONTHS = (
@@ -118,7 +120,8 @@ class TimeForm:
                 texts = '0:' + texts
             pattern = '%H:%M:%S%.f' if self.pattern == MINUTES else self.pattern
             hours = texts.str.to_time(pattern, strict=False)
-            return hours.cast(pl.Int64).cast(pl.Float64) / SECOND
+            seconds = hours.cast(pl.Int64).cast(pl.Float64) / SECOND
+            return _with_late_hours(seconds, texts) if pattern == HOURS[0] else seconds
         if self.kind == 'day':
             days = texts.str.to_date(self.pattern, strict=False)
             seconds = days.cast(pl.Int64).cast(pl.Float64) * DAY
@@ -153,6 +156,16 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
             key = re.sub('%[dm]', '', form.pattern) if form.order else form.pattern
             by_hours.setdefault(key, []).append(made)
     yield from map(tuple, by_hours.values())
+
+
+def _with_late_hours(seconds: pl.Series, texts: pl.Series) -> pl.Series:
+    """Return times of a day [s] with those from 24:00:00 on, which go on after midnight."""
+    late = texts.str.extract(LATE_HOURS).cast(pl.Float64)
+    if late.null_count() == len(late):
+        return seconds
+    within = texts.str.replace(r'^\d+', '0').str.to_time(HOURS[0], strict=False)
+    of_day = within.cast(pl.Int64).cast(pl.Float64) / SECOND + 3600.0 * late
+    return seconds.zip_with(late.is_null(), of_day)
 
 
 def _replaced(texts: pl.Series, steps: Iterable[tuple[str, str]]) -> pl.Series:

@@ -47,6 +47,12 @@ def mark_of_none(values: Array) -> float:
     return math.nan
 
 
+def counts_rows(values: Array) -> bool:
+    """Return True if values are whole numbers that count the rows."""
+    whole = len(values) > 1 and bool((values == np.floor(values)).all())
+    return whole and bool((np.diff(values) == 1.0).all())
+
+
 def is_silent(values: Array) -> bool:
     """Tell whether there is nothing but zeros."""
     return not np.nan_to_num(values).any()
@@ -230,7 +236,7 @@ def is_of_days(extremes: Array) -> bool:
 
 def is_of_a_day(extremes: Array) -> bool:
     """Tell whether the least and the most of times [s] are those of one day."""
-    return bool((extremes >= 0.0).all() and (extremes < DAY).all())
+    return bool((extremes >= 0.0).all() and (extremes <= DAY).all())
 
 
 class Midnights:

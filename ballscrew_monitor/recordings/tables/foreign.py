@@ -19,10 +19,16 @@ import re
 from typing import Any
 from xml.etree import ElementTree
 
-from ballscrew_monitor.recordings.tables import line_messages, long_form
+from ballscrew_monitor.recordings.tables import json_layouts, line_messages, long_form
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
-from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, LONGEST_PERIOD, RECORDER
+from ballscrew_monitor.recordings.tables.layouts import (
+    ADAPTER,
+    Format,
+    format_of,
+    LONGEST_PERIOD,
+    RECORDER,
+)
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
@@ -47,6 +53,8 @@ SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue',
 """Attributes of the CF conventions: a value is the number times the factor plus the offset."""
 GROUPED = ('mat', 'hdf', 'tdms')
 """Kinds whose signals are in groups, as `run.speed`."""
+JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
+"""How JSON begins; the name of a section in brackets does otherwise."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 RATES = frozenset(
     'fs rate samplerate samplingrate samplefrequency samplingfrequency frequency'.split()
@@ -101,7 +109,7 @@ def kind_of(head: bytes) -> str:
     if head.startswith(b'MATLAB 7.3') or head[512:516] == b'\x89HDF':
         return 'hdf'
     text = head.lstrip(b'\xef\xbb\xbf \t\r\n')
-    if text[:1] in (b'{', b'['):
+    if JSON.match(text):
         return 'json'
     if text.startswith((b'<?xml', b'<')):
         return 'xml'
@@ -148,23 +156,52 @@ def _of_its_kind(path: Path, kind: str) -> Iterator[None]:
 
 
 def _json(path: Path) -> Signals:
-    content = json.loads(path.read_bytes())
+    content = json_layouts.parsed(path.read_bytes())
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
-    left_out, factors = {}, ''
+    left_out, factors, content = {}, '', json_layouts.plain_table(content)
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
         factors = ', '.join(_stated_factors(content))
         if not records:
-            return Signals(frame=_side_by_side(lists), factors=factors)
-        content = lists[records[0]]
-        left_out = dict.fromkeys(records[1:], f'the records of {records[0]} come before it')
+            period, unclear = _period_beside(content, lists)
+            return Signals(
+                frame=_side_by_side(lists), factors=factors, period=period, unclear_period=unclear
+            )
+        chosen = max(records, key=lambda name: json_layouts.motion_of(lists[name]))
+        content = json_layouts.plain_table(lists[chosen])
+        others = [name for name in records if name != chosen]
+        left_out = dict.fromkeys(others, f'the records of {chosen} are read')
     if not _are_all(dict, content):
         raise TypeError
     frame = pl.from_dicts(content, infer_schema_length=None)
     return Signals(frame=frame, left_out=left_out, factors=factors)
+
+
+def _period_beside(content: Mapping[str, Any], lists: Iterable[str]) -> tuple[float, str]:
+    """Return the period [s] that a number beside lists states, and what may be one if unclear."""
+    stated = json_layouts.stated_periods(content)
+    numbers = {key: one for key, one in content.items() if isinstance(one, int | float)}
+    periods = stated | _periods(numbers)
+    told = ', '.join(f'{name} = {numbers[name]:g}' for name in periods)
+    if len(periods) == 1 and stated:
+        (period,) = stated.values()
+        period = period if period <= LONGEST_PERIOD else math.nan
+    else:
+        period = _period_of_rows(periods, lists)
+    return period, told if math.isnan(period) else ''
+
+
+def _periods(numbers: Mapping[str, Any]) -> dict[str, float]:
+    """Return the periods [s] that numbers may be by their names."""
+    last = {name: re.sub('[_ ]', '', name.rpartition('.')[2].lower()) for name in numbers}
+    return {
+        name: 1.0 / float(value) if last[name] in RATES else float(value)
+        for name, value in numbers.items()
+        if last[name] in RATES | PERIODS and float(value) > 0.0
+    }
 
 
 def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[str]:
@@ -258,7 +295,9 @@ def _echo(path: Path) -> Signals:
 
 def _long(path: Path) -> Signals:
     frame, separator = long_form.read_long(path)
-    return Signals(frame=frame, separator=separator)
+    with path.open('rb') as stream:
+        first = long_form.decoded(stream.read(limits.MEGA)).partition('\n')[0]
+    return Signals(frame=frame, separator=separator, program=format_of(first))
 
 
 def _mat(path: Path) -> Signals:
@@ -338,11 +377,11 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
     left_out: dict[str, str] = {}
     periods: dict[str, float] = {}
     for name, value in content.items():
-        array, last = np.asarray(value), re.sub('[_ ]', '', name.rpartition('.')[2].lower())
+        array = np.asarray(value)
         if array.dtype.kind not in 'iufb':
             left_out |= {name: 'it holds no numbers'} if array.size > 1 else {}
-        elif array.ndim == 0 and float(array) > 0.0 and last in RATES | PERIODS:
-            periods[name] = 1.0 / float(array) if last in RATES else float(array)
+        elif array.ndim == 0:
+            periods |= _periods({name: array})
         elif array.ndim == 1 and len(array) > 1:
             held[name] = array.astype(np.float64)
         elif array.ndim == 2 and min(array.shape) <= limits.COLUMNS:

@@ -235,6 +235,7 @@ class _Guesser:
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
         self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
+        self.notes += names.told_by_units(self.named)
         self._refuse_marks_of_none(columns)
         for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
             self.data[one.column] = self.data[one.column] * one.scale
@@ -431,7 +432,17 @@ class _Guesser:
             name: [one.column for one in chosen.values() if one.column not in self.data]
             for name, chosen in self.axes.items()
         }
-        self.times = [one for one in self.times if one.column in self.data]
+        last = self.source.names()[-1]
+        self.times = [
+            one
+            for one in self.times
+            if one.column in self.data
+            and not (
+                one.column == last
+                and NO_NAME.fullmatch(last)
+                and estimates.counts_rows(self.data[last])
+            )
+        ]
         for name, chosen in list(self.axes.items()):
             left = {kind: one for kind, one in chosen.items() if one.column in self.data}
             self.axes[name] = left
@@ -514,7 +525,7 @@ class _Guesser:
         """Return the unit of times, empty if unknown, and why it is that if nothing states it."""
         if one.column in self.timed:
             return 's', ''
-        stated = one.unit or self._unit_of_program(one)
+        stated = self._unit_of_program(one) or one.unit
         first, rising = values[:1], np.diff(np.unique(values[:NUMBERS]))
         step = float(np.median(rising)) if len(rising) else math.nan
         epochs = estimates.epoch_units(values) if len(values) > 1 else []
@@ -966,6 +977,11 @@ class _Guesser:
                 f'{unit}}}` there, so that {other} tells the load'
             )
         largest = float(np.nanmax(np.abs(self.extremes[column])))
+        if words_of(column)[-1:] == ['a'] and not instead:
+            instead = (
+                f'; or if its A means ampere, write `load: {{from: current}}` and `current: '
+                f'{{column: {column}, unit: A}}` there'
+            )
         return (
             f'{column} states none that is known, and forces of up to {largest:.3g} may be in '
             f'any{instead}'

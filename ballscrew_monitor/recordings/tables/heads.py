@@ -10,13 +10,14 @@ it, rows as wide as the block say something of each column, and narrow ones of t
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-import csv
 import dataclasses
 import functools
 import itertools
 import math
 import re
+from typing import Any
 
+from ballscrew_monitor.recordings.tables.cell_units import is_amount
 from ballscrew_monitor.recordings.tables.layouts import (
     COLUMN,
     Format,
@@ -29,10 +30,11 @@ from ballscrew_monitor.recordings.tables.layouts import (
     period_of,
     property_of,
     REMARK,
-    SEPARATED,
     unit_of_period,
 )
+from ballscrew_monitor.recordings.tables.lines import BLANKS, cells_of_line, Line, separators_of
 from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.numerals import plain_numeral
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
@@ -42,9 +44,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
 )
 from ballscrew_monitor.recordings.words import short
 
-BLANKS = ' '
-SEPARATORS = (';', '\t', '|', ',', BLANKS)
-"""What may part the cells; a comma may be a decimal sign as well, blanks stand in a date."""
+CHANNEL = re.compile(r'CH\s?\d+', re.I)
 COMMENTS = ('#', '%', '//')
 COMMENT = '#'
 NUMBER = re.compile(
@@ -80,19 +80,11 @@ COUNTED = re.compile(
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
+TORN = 0.02  # of the rows of numbers, at most, that hold more cells than the others
 FOLLOWING = 12  # rows that show whether a block begins
 UNNAMED = 'column {}'
 NO_NAME = re.compile(r'column \d+|Unnamed: \d+')
 """Names that are given to columns without one, here and by pandas."""
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Line:
-    """A row of a file as a text or as cells, and its number in the file."""
-
-    raw: str
-    row: int
-    cells: tuple[str, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -141,6 +133,20 @@ class Head:
     machine: Mapping[str, Statement] = dataclasses.field(default_factory=dict)
     factors: str = ''
 
+    def renamed(self, names: Mapping[str, str]) -> 'Head':
+        """Return it with other names of some columns."""
+
+        def of_new(held: Mapping[str, Any]) -> dict[str, Any]:
+            return {names.get(name, name): value for name, value in held.items()}
+
+        return dataclasses.replace(
+            self,
+            names=tuple(names.get(name, name) for name in self.names),
+            symbols=of_new(self.symbols),
+            periods=of_new(self.periods),
+            labelled=frozenset(names.get(name, name) for name in self.labelled),
+        )
+
     def surplus(self, row: int, cells: int) -> str:
         """Return what is wrong with a row of more cells than there are columns."""
         return _surplus(row, cells, len(self.names), self.separator)
@@ -179,7 +185,7 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     Raises ValueError where no line can be that of a table.
 
     """
-    blocks = {sign: _Block(lines, sign) for sign in _separators(lines)}
+    blocks = {sign: _Block(lines, sign) for sign in separators_of(lines)}
     if layout is not None:
         return _stated_head(lines, layout, blocks)
     block = max(blocks.values(), key=lambda one: (one.score, max(map(len, one.rows))))
@@ -188,9 +194,16 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     return _Above(lines[: block.begin], block).head(lines[block.begin].row)
 
 
+def cells_of(lines: Sequence[Line], head: Head) -> dict[str, list[str]]:
+    """Return the cells of the columns of a table in its first lines."""
+    rows = (cells_of_line(line, head.separator) for line in lines[head.begin :])
+    whole = [row for row in rows if len(row) == len(head.names)]
+    return dict(zip(head.names, map(list, zip(*whole, strict=True)), strict=False))
+
+
 def holds_numbers(lines: Sequence[Line], fewest: int) -> bool:
     """Return True if some of the lines, at least so many, are rows of numbers."""
-    return any(_Block(lines, sign).score >= fewest / 2 for sign in _separators(lines))
+    return any(_Block(lines, sign).score >= fewest / 2 for sign in separators_of(lines))
 
 
 def unlike(names: Iterable[str]) -> tuple[str, ...]:
@@ -203,38 +216,13 @@ def unlike(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(made)
 
 
-def _separators(lines: Sequence[Line]) -> tuple[str, ...]:
-    if lines and lines[0].cells:
-        return ('',)
-    match = SEPARATED.match(lines[0].raw) if lines else None
-    return (match['sign'],) if match and match['sign'] in SEPARATORS else SEPARATORS
-
-
-def _cells(line: Line, separator: str) -> list[str]:
-    """Return the cells of a line without blanks around them."""
-    if line.cells:
-        return [cell.strip() for cell in line.cells]
-    text = line.raw.strip('\r\n')
-    if separator == BLANKS:
-        return [cell.strip('"') for cell in re.findall(r'"[^"]*"|\S+', text)]
-    if '"' not in text:
-        return [cell.strip() for cell in text.split(separator)]
-    try:
-        rows = list(csv.reader([text], delimiter=separator, skipinitialspace=True))
-    except csv.Error:
-        if len(text) > csv.field_size_limit():
-            raise
-        return []
-    return [cell.strip() for cell in rows[0]] if rows else []
-
-
 @functools.lru_cache(maxsize=1 << 16)
 def _kind(cell: str) -> str:
     """Return n for a number or time, - for nothing, and x for any other cell."""
     if not cell or cell.lower() in NO_NUMBER:
         return '-'
     if any(letter.isdigit() for letter in cell) and (
-        NUMBER.fullmatch(cell) or TIME.fullmatch(cell)
+        NUMBER.fullmatch(plain_numeral(cell)) or TIME.fullmatch(cell) or is_amount(cell)
     ):
         return 'n'
     return 'x'
@@ -246,11 +234,12 @@ class _Block:
     def __init__(self, lines: Sequence[Line], separator: str) -> None:
         self.separator = separator
         self.rows = [
-            [] if line.raw.startswith(COMMENT) else _cells(line, separator) for line in lines
+            [] if line.raw.startswith(COMMENT) else cells_of_line(line, separator)
+            for line in lines
         ]
         kinds = [[_kind(cell) for cell in row] for row in self.rows]
         self.data = [at for at, row in enumerate(kinds) if _is_data(row)]
-        self.width = max((len(self.rows[at]) for at in self.data), default=0)
+        self.width = _usual_width([len(self.rows[at]) for at in self.data])
         counts: list[Counter[str]] = [Counter() for _ in range(self.width)]
         settled = len(self.data) // 3
         for at in self.data[settled:]:
@@ -308,9 +297,15 @@ class _Block:
         return len(rows) * alone * numbers / cells if cells else 0.0
 
 
+def _usual_width(widths: Sequence[int]) -> int:
+    """Return the largest number of cells that rows have, but for a few torn or foreign ones."""
+    counts = Counter(widths)
+    return max((width for width, count in counts.items() if count > TORN * len(widths)), default=0)
+
+
 def _number(cell: str) -> float:
     try:
-        return float(cell.replace(',', '.'))
+        return float(plain_numeral(cell).replace(',', '.'))
     except ValueError:
         return math.nan
 
@@ -356,12 +351,12 @@ def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Bl
     if not block.score and not line.cells:
         plain = re.sub('"[^"]*"', '', line.raw)
         separator = max((',', '|', '\t', ';'), key=plain.count)
-    rows = [_cells(line, separator) for line in lines[begin:end]]
+    rows = [cells_of_line(line, separator) for line in lines[begin:end]]
     if len(rows) < layout.header_rows:
         raise ValueError('no line names its columns')
     first = lines[end].row if end < len(lines) else lines[end - 1].row + 1
     if not rows:
-        names = [UNNAMED.format(at + 1) for at in range(len(_cells(line, separator)))]
+        names = [UNNAMED.format(at + 1) for at in range(len(cells_of_line(line, separator)))]
     else:
         below = [*(rows[1] if len(rows) > 1 else []), *[''] * len(rows[0])]
         names = [_joined(name, part) for name, part in zip(rows[0], below, strict=False)]
@@ -424,6 +419,7 @@ class _Above:
 
     def head(self, first: int) -> Head:
         names, named = self._names()
+        names = self._called(names)
         if named and len(names) < self.width:
             raise ValueError(self._surplus(first, len(names)))
         filled = [at + 1 for at, name in enumerate(names) if name]
@@ -559,7 +555,32 @@ class _Above:
             groups = [name or '' for name in above]
             joined = [f'{group} {name}'.strip() for group, name in zip(groups, row)]
             row = joined if len(set(joined)) == len(joined) else row
-        return list(row)
+        return self._with_groups(best[0], list(row))
+
+    def _with_groups(self, line: Line, row: list[str]) -> list[str]:
+        """Return names with those right above, where a unit or nothing stands below these."""
+        rows = [cells for each, cells in self.lines if each.row == line.row - 1]
+        above = [*rows[0], *[''] * (len(row) - len(rows[0]))] if rows else []
+        named = [
+            bool(head and read_name(head).kind) and (not cell or is_unit(cell))
+            for head, cell in zip(above, row, strict=False)
+        ]
+        if not any(named) or _is_of_units(above) or _is_of_units(row):
+            return row
+        made, group = [], ''
+        for head, cell, is_named in zip(above, row, named, strict=False):
+            group = '' if is_named else head or group
+            made.append(_joined(head, cell) if is_named else f'{group} {cell}'.strip())
+        return made
+
+    def _called(self, names: Sequence[str]) -> list[str]:
+        """Return names of channels as lines above call them: a channel and its name in each."""
+        called = {
+            row[0]: row[1]
+            for _, row in self.lines
+            if len(row) > 1 and CHANNEL.fullmatch(row[0]) and read_name(row[1]).kind
+        }
+        return [called.get(name, name) for name in names]
 
     def _comment(self) -> list[str]:
         """Return the names in the last remark that has as many as there are columns."""
@@ -567,7 +588,9 @@ class _Above:
             text = line.raw.strip()
             mark = next((mark for mark in COMMENTS if text.startswith(mark)), '')
             if mark:
-                row = _cells(Line(raw=text.removeprefix(mark).strip(), row=0), self.separator)
+                row = cells_of_line(
+                    Line(raw=text.removeprefix(mark).strip(), row=0), self.separator
+                )
                 if len(row) == self.width > 1 and not _is_of_numbers(row):
                     return row
         return []

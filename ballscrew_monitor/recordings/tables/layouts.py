@@ -79,6 +79,13 @@ STATED = re.compile(r'([\d.,]+(?:e[-+]?\d+)?)\s*[\[(]?\s*([^\s\d\[\]()]*)[\])]?'
 PERIOD = re.compile('([nuµμm]?)s(?:ec(?:onds?)?|ek(?:unden?)?)?')
 RATE = re.compile('(k?)hz')
 """A number with its unit; units of a period and of a rate."""
+PER_SECOND = re.compile(
+    r'\s*[\[(]?\s*(?:1\s*/\s*|(?:(?:samples|values|rows|points)\s*)?(?:/|\bper\b)\s*)s(?:ec(?:ond)?)?'
+    r'\s*[\])]?$',
+    re.I,
+)
+"""What stands for Hz."""
+PART_OF_SECOND = re.compile(r'1\s*/\s*(?P<rate>\d+(?:[.,]\d+)?)\s*s(?:ec(?:ond)?)?', re.I)
 PERIODS = {'n': 1e-9, 'u': 1e-6, 'µ': 1e-6, 'μ': 1e-6, 'm': 1e-3, 's': 1.0}
 RATES = {'': 1.0, 'k': 1e3}
 """Units [s] of a period and [Hz] of a rate by their first letter."""
@@ -193,6 +200,11 @@ FORMATS = (
         mark=re.compile(r'^"?(?:SymbolName|NetId|SymbolBased|SampleTime\[ms\])"?[\t;,]', re.M),
         labelled='ms',
     ),
+    Format(
+        program='WinCC',
+        mark=re.compile('^(?=.*TimeString).*Time_ms', re.M),
+        times=(('Time_ms', 'spreadsheet_microdays'),),
+    ),
     Format(program='rostopic echo -p', mark=re.compile('^%time,', re.M), times=(('%time', 'ns'),)),
     Format(
         program='FANUC SERVO GUIDE', mark=re.compile(r'\b(?:TCMD|VCMD|POSF|SPEED|ERR)\b.*\(', re.M)
@@ -230,7 +242,10 @@ def period_of(text: str, unit: str = '') -> float:
     before three digits, which may be of thousands.
 
     """
-    match = STATED.fullmatch(text.strip())
+    text, unit = text.strip(), PER_SECOND.sub('Hz', unit)
+    if match := PART_OF_SECOND.fullmatch(text):
+        text, unit = match['rate'], 'Hz'
+    match = STATED.fullmatch(PER_SECOND.sub(' Hz', text))
     if match and THOUSANDS.fullmatch(match[1]):
         return math.nan  # thousands, or three decimals
     try:

@@ -17,6 +17,7 @@ import re
 import statistics
 
 from ballscrew_monitor.recordings.tables.cells import Unreadable
+from ballscrew_monitor.recordings.tables.codings import wide_coding
 from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
 from ballscrew_monitor.recordings.tables.marks import STATUS, valid_cells
 from ballscrew_monitor.recordings.tables.names import read_name
@@ -87,9 +88,9 @@ def first_lines(head: bytes) -> list[str]:
 
 
 def decoded(content: bytes) -> str:
-    """Return a text in the first coding that fits; UTF-16 has a mark."""
-    if content.startswith((b'\xff\xfe', b'\xfe\xff')):
-        return content[: len(content) // 2 * 2].decode('utf-16', errors='replace')
+    """Return a text in the first coding that fits."""
+    if coding := wide_coding(content):
+        return content[: len(content) // 4 * 4].decode(coding, errors='replace')
     for coding in CODINGS[:-1]:
         try:
             return content.decode(coding)

@@ -88,6 +88,9 @@ JOINED_WORDS = {
     'frt': 'feed',
     'load': 'load percent',
 }
+DRIVE_WORDS = {'PL': 'position', 'VL': 'velocity', 'IL': 'current', 'FB': 'actual'}
+OF_DRIVES = re.compile(r'\b(?P<loop>PL|VL|IL)\.(?P<value>FB|CMD)\b')
+"""Loops of position, velocity and current, as drives of Kollmorgen call their values."""
 AMOUNTS = frozenset('magnitude betrag diameter dia durchmesser'.split())
 WITHOUT_SIGN = frozenset('abs absolute unsigned norm modulus amplitude amount total'.split())
 """Words of an amount of a speed or force; a position is absolute where its zero is fixed."""
@@ -134,10 +137,10 @@ class Named:
 
 def read_name(column: str, text: str = '') -> Named:
     """Return what the name of a column says, or a longer text about it."""
-    told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, text or column))
+    told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, OF_DRIVES.sub(_of_drive, text or column)))
     words = words_of(told)
     place, axis = _place(words)
-    kind, rank = _kind(words), _rank(words)
+    kind, rank = _kind_of_unit(column, words) or _kind(words), _rank(words)
     if _is_part_of_the_rated_torque(column, words):
         return Named(
             column=column, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1
@@ -200,6 +203,10 @@ def _parted(match: re.Match[str]) -> str:
     return f'{axis} {JOINED_WORDS.get(word, word)} '
 
 
+def _of_drive(match: re.Match[str]) -> str:
+    return ' '.join(DRIVE_WORDS.get(word, word) for word in match.groups())
+
+
 def is_of_the_screw(column: str) -> bool:
     """Tell whether the name of a column says that it is about the screw or its oil."""
     return bool(OF_THE_SCREW & set(words_of(column)))
@@ -248,6 +255,35 @@ def _kind(words: Sequence[str]) -> str:
         return ''
     is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
     return '' if is_quality else found[-1]
+
+
+def _kind_of_unit(column: str, words: Sequence[str]) -> str:
+    """
+    Return the quantity of several that a name states in its unit: a `speed at load` is a speed.
+
+    A load in A or N m is a current or torque of the motor. Empty where the last word is right.
+
+    """
+    last = _kind(words)
+    found = [kind for kind, known in KINDS.items() if known & set(words)] if last else []
+    found += ['torque', 'current'] if last == 'load' and BRACKETS.search(column) else []
+    if last in ('', 'time') or unit_of(column, last) or converted_unit(column, last)[0]:
+        return ''
+    others = [kind for kind in found if kind not in (last, 'time', 'temperature')]
+    return next(
+        (kind for kind in others if unit_of(column, kind) or converted_unit(column, kind)[0]), ''
+    )
+
+
+def told_by_units(named: Sequence[Named]) -> list[str]:
+    """Return sentences about loads that are torques or currents by their unit."""
+    return [
+        f'{short(one.column)} is a {one.kind} by its unit, of which the load is worked out'
+        for one in named
+        if one.kind in ('torque', 'current') and one.unit != RATED and one.place != 'spindle'
+        if set(words_of(one.column)) & KINDS['load']
+        and not set(words_of(one.column)) & KINDS[one.kind]
+    ]
 
 
 def _kind_by_unit(column: str, place: str) -> str:

@@ -15,12 +15,14 @@ EPOCHS = {
     'labview_s': (1.0, -2_082_844_800.0),
     'datenum': (DAY, -719_529 * DAY),
     'mjd': (DAY, -40_587 * DAY),
+    'dotnet_ticks': (1e-7, -62_135_596_800.0),
+    'spreadsheet_microdays': (1e-6 * DAY, -25_569 * DAY),
 }
 """
 Counts of times since other epochs: a unit of each [s], and their zero [s] since 1970.
 
-They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, days of MATLAB, and
-modified Julian days.
+They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, days of MATLAB, modified
+Julian days, ticks of 100 ns since the year 1, and millionths of days since 1900, as of WinCC.
 
 """
 SCALES = {

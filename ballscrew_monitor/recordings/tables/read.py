@@ -241,15 +241,18 @@ def _check_names_within(source: Source, block: pl.DataFrame, first: int) -> None
 
 
 def _short_rows(source: Source, rows: int) -> list[str]:
-    """Return in a sentence how many rows hold too few cells; raises InputError for too many."""
+    """Return in a sentence how many rows hold other numbers of cells; raises for too many."""
     short, names = source.short, len(source.head.names)
     if not short.count:
         return []
+    which = {0: 'fewer', short.count: 'more'}.get(short.longer, 'fewer or more')
     words = (
-        f'log {source.path}: {counted(short.count, "row")} of {rows} with fewer cells than the '
+        f'log {source.path}: {counted(short.count, "row")} of {rows} with {which} cells than the '
         f'{names} columns, the first is row {short.first} with {short.cells}'
     )
     if short.count > max(1, SHORT * rows):
+        if short.longer and short.cells > names:
+            raise InputError(f'log {source.path}: {source.head.surplus(short.first, short.cells)}')
         raise InputError(f'{words}: write an empty cell where a column has no value')
     return [f'{words}; left out']
 

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 import dataclasses
 import re
 
+from ballscrew_monitor.recordings.tables.numerals import plain_numerals
 from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
 from ballscrew_monitor.recordings.words import short
 import numpy as np
@@ -30,6 +31,7 @@ _SIGNED = {sign: rf'^\s*[{marks}]\s*(\d|[.,]\d)' for sign, marks in (('-', MINUS
 
 def with_plain_sign(texts: pl.Series) -> pl.Series:
     """Return texts without blanks around them, numbers with a plain minus just before them."""
+    texts = plain_numerals(texts)
     for sign, pattern in _SIGNED.items():
         texts = texts.str.replace(pattern, f'{sign}$1')
     return texts.str.strip_chars()
@@ -98,6 +100,7 @@ class Signs:
 
     def look(self, texts: pl.Series, row: int) -> None:
         """Look at further cells that hold a sign, the first of them in a row of the file."""
+        texts = plain_numerals(texts)
         for sign in OTHER_SIGN:
             doubtful = are(texts, thousands(sign))
             sure = are(texts, _DECIMAL[sign]) & ~doubtful

@@ -3,12 +3,12 @@
 """
 Tables as they stand in files: CSV, Parquet or a sheet of xlsx, one frame of cells for each.
 
-A CSV may be of UTF-8, UTF-16 with a mark, or one byte for a letter, and its lines may end by a
-line feed, a carriage return or both. All is bounded before it is read.
+A CSV may be of UTF-8, UTF-16, UTF-32 or one byte for a letter, or packed by gzip, and its lines
+may end by a line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import contextlib
 import csv
 import dataclasses
@@ -18,13 +18,16 @@ from pathlib import Path
 import re
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.tables import foreign, heads
+from ballscrew_monitor.recordings.tables import codings, foreign, heads
+from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainly
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
+from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
+from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.workbook import read_sheet
+from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, read_sheet
 from ballscrew_monitor.recordings.words import listed, short
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +42,8 @@ FEWEST = 20  # rows of numbers of a log whose ending says nothing
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
+PANDAS_INDEX, TIME = '__index_level_0__', 'time'
+"""What pandas calls a column of its index, and what that is where it holds moments."""
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
 EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
 SPACES = re.compile(rb'[ \t]+')
@@ -46,7 +51,6 @@ SPACES = re.compile(rb'[ \t]+')
 COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
 """Names of a last column whose cells a row need not have."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
-WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
@@ -61,24 +65,38 @@ Types = Mapping[str, Any]
 
 @dataclasses.dataclass(kw_only=True, slots=True)
 class ShortRows:
-    """Rows of fewer cells than a table has columns: how many, the first of them and its cells."""
+    """
+    Rows of other numbers of cells than a table has columns, the first of them and its cells.
+
+    `longer` of them, of `count`, have more cells.
+
+    """
 
     count: int = 0
+    longer: int = 0
     first: int = 0
     cells: int = 0
 
     def left_out(
-        self, rows: pl.DataFrame, widths: NDArray[np.int64], width: int, first: int
+        self,
+        rows: pl.DataFrame,
+        widths: NDArray[np.int64],
+        width: int,
+        first: int,
+        longer: NDArray[np.bool_],
     ) -> pl.DataFrame:
-        """Return rows from `first` on, those of too few cells without any, and count these."""
-        short = (widths > 0) & (widths < width)
-        if len(widths) != rows.height or not short.any():
+        """Return rows from `first` on, those of too few or more cells without any, and count."""
+        if len(widths) != rows.height:
+            return rows
+        uneven = longer | ((widths > 0) & (widths < width))
+        if not uneven.any():
             return rows
         if not self.count:
-            at = int(short.argmax())
+            at = int(uneven.argmax())
             self.first, self.cells = first + at, int(widths[at])
-        self.count += int(short.sum())
-        return rows.select(pl.when(pl.Series(~short)).then(pl.all()))
+        self.count += int(uneven.sum())
+        self.longer += int(longer.sum())
+        return rows.select(pl.when(pl.Series(~uneven)).then(pl.all()))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,6 +129,32 @@ class Source:
     def marked(self, marks: Mapping[str, Marks]) -> 'Source':
         """Return it with the columns that are marked read by their marks."""
         return dataclasses.replace(self, read=marked(self.read, marks)) if marks else self
+
+    def plain(self, cells: Mapping[str, Sequence[str]]) -> 'Source':
+        """Return it with plain cells where some cells of a column show that they are none."""
+        with _findable(self.path):
+            columns = plain_columns(cells)
+        if not columns:
+            return self
+        head = self.head.renamed({name: column.name for name, column in columns.items()})
+        return dataclasses.replace(self, head=head, read=plainly(self.read, columns))
+
+    def joined(self) -> 'Source':
+        """Return it with one column of times in the place of several with their parts."""
+
+        def first_rows(names: list[str]) -> pl.DataFrame:
+            with readable(f'log {self.path} cannot be read'):
+                return next((part.head(LINES) for part in self.read(names, {})), pl.DataFrame())
+
+        names = self.names()
+        time = joined_time(names, first_rows)
+        if not time.name:
+            return self
+        parts = set(time.columns.values())
+        place = min(map(names.index, parts))
+        left = [name for name in names if name not in parts]
+        head = dataclasses.replace(self.head, names=(*left[:place], time.name, *left[place:]))
+        return dataclasses.replace(self, head=head, read=joining(self.read, time))
 
     def unread(self, columns: Collection[str]) -> dict[str, str]:
         """Return why parts of the file are not read: also groups with none of the columns."""
@@ -153,7 +197,13 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
     Of a workbook it is that in a `sheet`, or in the first sheet with a table.
 
     """
+    return _source_of(path, layout, sheet).joined()
+
+
+def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
     head = _head_of(path)
+    if head.startswith(codings.GZIP):
+        _check_packed(path)
     if head.startswith(PARQUET):
         return _parquet(path)
     if head.startswith(ZIP):
@@ -163,9 +213,12 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
         _check_columns(path, signals.frame.width)
         frame = signals.frame.lazy()
         source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
-        return dataclasses.replace(
+        source = dataclasses.replace(
             source, left_out=signals.left_out, is_grouped=kind in foreign.GROUPED
         )
+        texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
+        cells = dict(zip(signals.frame.columns, source.names(), strict=True))
+        return source.plain({cells[name]: column.to_list() for name, column in texts.items()})
     return _text(path, layout, _Text.of(path, head))
 
 
@@ -202,12 +255,46 @@ def _head_of(path: Path) -> bytes:
     return head
 
 
+def _check_packed(path: Path) -> None:
+    """Raise InputError unless what gzip packed is a text with rows of cells."""
+    head = codings.unpacked(path, HEAD)
+    if head.startswith((PARQUET, ZIP)) or foreign.kind_of(head):
+        raise InputError(
+            f'log {path} is packed by gzip, of which texts with rows of cells are read alone: '
+            'unpack it before'
+        )
+
+
 def _parquet(path: Path) -> Source:
     rows, names = _shape_of_parquet(path)
     _check_columns(path, len(names))
     most = max(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
+    frame = _flat(pl.scan_parquet(path))
+    schema = frame.collect_schema()
+    _check_columns(path, len(schema))
+    timed = PANDAS_INDEX in schema and schema[PANDAS_INDEX].is_temporal()
+    frame = frame.rename({PANDAS_INDEX: TIME} if timed and TIME not in schema else {})
+    names = frame.collect_schema().names()
     head = Head(names=heads.unlike(names), separator='', begin=0, first=1)
-    return of_frame(path, pl.scan_parquet(path), head, rows, most)
+    return of_frame(path, frame, head, rows, most)
+
+
+def _flat(frame: pl.LazyFrame) -> pl.LazyFrame:
+    """Return a frame with a column for each field of a structure, as `x.position`."""
+    while any(isinstance(kind, pl.Struct) for kind in frame.collect_schema().values()):
+        frame = frame.select(
+            one
+            for name, kind in frame.collect_schema().items()
+            for one in (
+                [
+                    pl.col(name).struct.field(field.name).alias(f'{name}.{field.name}')
+                    for field in kind.fields
+                ]
+                if isinstance(kind, pl.Struct)
+                else [pl.col(name)]
+            )
+        )
+    return frame
 
 
 def _shape_of_parquet(path: Path) -> tuple[int, list[str]]:
@@ -269,8 +356,17 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
         head = heads.find_head(lines, layout)
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
+    empty = [  # but for the first cell, from which a formula may count on
+        name for name, column in zip(head.names, frame) if column.null_count() >= len(column) - 1
+    ]
+    if empty and holds_formulas_alone(path):
+        raise InputError(
+            f'log {path}: column {short(repr(empty[0]))} holds formulas without their values: '
+            'open the workbook in a spreadsheet and save it, which works them out'
+        )
     source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
-    return dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
+    source = dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
+    return source.plain(heads.cells_of(lines, head))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -284,11 +380,10 @@ class _Text:
 
     @classmethod
     def of(cls, path: Path, head: bytes) -> '_Text':
-        content, size = None, path.stat().st_size
-        if head.startswith(WIDE_MARKS):
-            content = _narrow(path, size)
+        content, size = codings.decoded(path, head), path.stat().st_size
+        if content is not None:
             head, size = content[:HEAD], len(content)
-        if b'\0' in head:
+        if codings.NUL in head:
             raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
         lines = max(head.count(line_end.encode()), 1) * size // len(head)
@@ -326,19 +421,6 @@ def _too_long(path: Path) -> InputError:
     )
 
 
-def _narrow(path: Path, size: int) -> bytes:
-    """Return a text of UTF-16 in UTF-8; raises InputError."""
-    if size > limits.WORKBOOK:
-        raise InputError(
-            f'log {path} of UTF-16 has more than {limits.WORKBOOK // limits.MEGA} MB: save it as '
-            'UTF-8'
-        )
-    try:
-        return path.read_bytes().decode('utf-16').encode()
-    except UnicodeError as error:
-        raise InputError(f'log {path} cannot be read as UTF-16: {first_line(error)}') from None
-
-
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
@@ -348,6 +430,11 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with _findable(path):
         head = heads.find_head(lines, layout)
     _check_columns(path, len(head.names))
+    if len(head.names) == 1 and (sign := unread_separator(lines[max(head.begin - 1, 0) :])):
+        raise InputError(
+            f'log {path}: {sign} seems to part its cells, allowed are {listed(NAMES_OF_SIGNS)}: '
+            'replace it by one of these'
+        )
     blanks = head.separator == heads.BLANKS
     options: dict[str, Any] = {
         'separator': head.separator,
@@ -366,7 +453,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     line = head.separator.join(map(str, range(width + 1))) + text.line_end
 
     def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
-        tries, row, short.count = TRIES, head.first, 0
+        tries, row, short.count, short.longer = TRIES, head.first, 0, 0
         chosen = sorted(set(names), key=places.__getitem__)
         options['columns'] = [*(places[name] for name in chosen), width]
         called = {str(places[name]): name for name in chosen}
@@ -387,15 +474,15 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 surplus = ~empties(cells[str(width)])
                 if not whole or surplus.any():
                     widths = _widths(content, head.separator, text.line_end)
-                    if surplus.any():
+                    if surplus.any() and len(widths) != cells.height:
                         at = int(surplus.argmax())
-                        found = int(widths[at]) if len(widths) == cells.height else width + 1
-                        raise InputError(f'log {path}: {head.surplus(row + at, found)}')
-                    cells = short.left_out(cells, widths, least, row)
+                        raise InputError(f'log {path}: {head.surplus(row + at, width + 1)}')
+                    cells = short.left_out(cells, widths, least, row, surplus)
                 row += cells.height
                 yield cells.rename(called).select(names)
 
-    return Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+    source = Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+    return source.plain(heads.cells_of(lines, head))
 
 
 def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:

@@ -40,6 +40,7 @@ NO_DAY = '1899-12-31 '
 """Day that a sheet adds to a time of day."""
 SHEET = b'sheetData'  # the element that holds the cells
 CELL = re.compile(rb'[<:]c[\s/>]')
+BARE_FORMULA = re.compile(rb'</f>\s*(?:<v>\s*</v>|<v\s*/>)?\s*</c>')
 COLUMN, ROW = '[A-Za-z]{1,7}', '[0-9]{1,19}'
 PLAIN_CELL = re.compile(f'<c r="({COLUMN})({ROW})"'.encode())
 LETTERS = 26
@@ -135,6 +136,16 @@ def _check_size(path: Path) -> None:
             raise InputError(f'{failure}: it holds no sheet of xlsx')
         for part, size in sheets:
             _check_cells(path, archive, part, min(max(size * SIZES, limits.SPARSE), limits.MEMORY))
+
+
+def holds_formulas_alone(path: Path) -> bool:
+    """Return True if cells of a workbook, which was read before, hold formulas without a value."""
+    with zipfile.ZipFile(path) as archive:
+        for part in archive.infolist():
+            with archive.open(part) as stream:
+                if any(map(BARE_FORMULA.search, _whole_tags(stream))):
+                    return True
+    return False
 
 
 def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, int]]:

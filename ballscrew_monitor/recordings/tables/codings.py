@@ -1,0 +1,107 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Codings of a text: UTF-16 and UTF-32 with a mark or without, NULs behind the end, gzip.
+
+Such a text is decoded in memory, so that its size is bounded.
+
+"""
+
+from pathlib import Path
+import re
+import zlib
+
+from ballscrew_monitor.recordings.tables.cells import first_line
+from surrogate.files import InputError, limits
+
+GZIP = b'\x1f\x8b'
+MARKS = {
+    b'\xff\xfe\0\0': 'utf-32',
+    b'\0\0\xfe\xff': 'utf-32',
+    b'\xff\xfe': 'utf-16',
+    b'\xfe\xff': 'utf-16',
+}
+"""Marks of a coding, the longer ones first."""
+SHAPES = {
+    'utf-32-le': re.compile(rb'(?:[^\0]\0\0\0){4,}'),
+    'utf-32-be': re.compile(rb'(?:\0\0\0[^\0]){4,}'),
+    'utf-16-le': re.compile(rb'(?:[^\0]\0){8,}'),
+    'utf-16-be': re.compile(rb'(?:\0[^\0]){8,}'),
+}
+"""How the first letters of a text without a mark look, most of which are of ASCII."""
+NUL = b'\0'
+TAIL = 4096  # [bytes] at the end of a file in which NULs may begin
+
+
+def wide_coding(head: bytes) -> str:
+    """Return the coding of a text whose letters take two or four bytes, empty for any other."""
+    marked = next((coding for mark, coding in MARKS.items() if head.startswith(mark)), '')
+    shaped = (coding for coding, shape in SHAPES.items() if shape.match(head))
+    return marked or next(shaped, '')
+
+
+def decoded(path: Path, head: bytes) -> bytes | None:
+    """Return a text in UTF-8 by its first bytes, None if it can be read as it is."""
+    if head.startswith(GZIP):
+        content = unpacked(path)
+        coding = wide_coding(content)
+        return _narrow(path, content, coding) if coding else content.rstrip(NUL)
+    if coding := wide_coding(head):
+        _check_size(path, f'of {coding.upper()[:6]}', 'save it as UTF-8')
+        return _narrow(path, path.read_bytes(), coding)
+    if _ends_with_nul(path):
+        _check_size(path, 'with NULs behind its end', 'cut these off')
+        return path.read_bytes().rstrip(NUL)
+    return None
+
+
+def unpacked(path: Path, size: int = 0) -> bytes:
+    """Return what is packed in a file by gzip, `size` bytes of it at least if it holds so much."""
+    most = min(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
+    parts, length, reader = [], 0, zlib.decompressobj(zlib.MAX_WBITS | 16)
+    try:
+        with path.open('rb') as stream:
+            while (block := reader.unconsumed_tail or stream.read(limits.MEGA)) and length <= most:
+                parts.append(reader.decompress(block, limits.MEGA))
+                length += len(parts[-1])
+                if reader.eof:
+                    rest = reader.unused_data or stream.read(limits.MEGA)
+                    if not rest.startswith(GZIP):
+                        break
+                    reader = zlib.decompressobj(zlib.MAX_WBITS | 16)
+                    parts.append(reader.decompress(rest, limits.MEGA))
+                    length += len(parts[-1])
+                if size and length >= size:
+                    return b''.join(parts)[:size]
+    except zlib.error as error:
+        raise InputError(f'log {path} cannot be unpacked by gzip: {first_line(error)}') from None
+    if length > most:
+        raise InputError(
+            f'log {path} comes to more than {most // limits.MEGA} MB when it is unpacked: unpack '
+            'it before'
+        )
+    if not reader.eof:
+        raise InputError(f'log {path} is cut off within what gzip packed: pack it again')
+    return b''.join(parts)
+
+
+def _narrow(path: Path, content: bytes, coding: str) -> bytes:
+    """Return a text of a coding in UTF-8; raises InputError."""
+    try:
+        return content.decode(coding).rstrip('\0').encode()
+    except UnicodeError as error:
+        name = coding.upper()[:6]
+        raise InputError(f'log {path} cannot be read as {name}: {first_line(error)}') from None
+
+
+def _check_size(path: Path, what: str, cure: str) -> None:
+    if path.stat().st_size > limits.WORKBOOK:
+        raise InputError(
+            f'log {path} {what} has more than {limits.WORKBOOK // limits.MEGA} MB: {cure}'
+        )
+
+
+def _ends_with_nul(path: Path) -> bool:
+    with path.open('rb') as stream:
+        stream.seek(max(path.stat().st_size - TAIL, 0))
+        return stream.read().endswith(NUL)

@@ -1,0 +1,231 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Layouts in which programs write tables as JSON, brought to two: records, or lists by their names.
+
+Each layout is an entry of a table. What none of them is stays as it is.
+
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+import json
+import math
+from typing import Any
+
+from ballscrew_monitor.recordings.tables.cells import Unreadable
+from ballscrew_monitor.recordings.tables.layouts import period_of, property_of
+from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.unit_names import BRACKETS
+
+NAMES = ('columns', 'names', 'fields', 'headers', 'header', 'channels', 'signals')
+ROWS = ('data', 'values', 'rows', 'samples')
+CHANNELS = ('channels', 'signals', 'series', 'traces', 'curves', 'data', 'datasets')
+NAME = ('name', 'label', 'id', 'channel', 'signal')
+UNIT = ('unit', 'units')
+VALUES = ('values', 'data', 'samples', 'y')
+TIMES = ('times', 'timestamps', 'time', 'x')
+INDEX = 'index'
+"""Name of a column of what pandas calls so."""
+Content = Any
+
+
+def parsed(text: bytes) -> Content:
+    """Return the content of a JSON text, or of one in each of its lines; raises ValueError."""
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        if not error.msg.startswith('Extra data'):
+            raise
+    lines = [line for line in text.splitlines() if line.strip()]
+    records = []
+    for number, line in enumerate(lines):
+        try:
+            records.append(json.loads(line))
+        except json.JSONDecodeError as error:
+            if number + 1 < len(lines):
+                raise Unreadable(f'line {number + 1} is no JSON: {error.msg}') from None
+    return records
+
+
+def plain_table(content: Content) -> Content:
+    """Return a table in any known layout as a list of records, or as lists by their names."""
+    for layout in LAYOUTS:
+        if (table := layout(content)) is not None:
+            return table
+    return content
+
+
+def stated_periods(content: Content) -> dict[str, float]:
+    """Return the periods [s] that numbers beside the signals state with their unit, by name."""
+    periods: dict[str, float] = {}
+    for key, value in content.items() if isinstance(content, dict) else ():
+        label, _, unit = key.rpartition('_')
+        if isinstance(value, int | float) and property_of(label) in ('period', 'rate'):
+            period = period_of(f'{value:.12g} {unit}')
+            periods |= {key: period} if math.isfinite(period) else {}
+    return periods
+
+
+def motion_of(records: Sequence[Any]) -> int:
+    """Return how many fields of records name a quantity."""
+    return sum(bool(read_name(name).kind) for name in records[0]) if records else 0
+
+
+def _first(content: Mapping[str, Any], keys: Sequence[str]) -> Any:
+    return next((content[key] for key in keys if key in content), None)
+
+
+def _with_unit(name: Any, unit: Any) -> str:
+    bare = not unit or not isinstance(unit, str) or BRACKETS.search(str(name))
+    return str(name) if bare else f'{name} [{unit}]'
+
+
+def _are(kind: type, values: Any) -> bool:
+    return (
+        isinstance(values, list) and bool(values) and all(isinstance(one, kind) for one in values)
+    )
+
+
+def _named_rows(content: Content) -> Content:
+    """Return names beside rows or columns: {columns, data}, perhaps with units and an index."""
+    if not isinstance(content, dict):
+        return None
+    names, rows = _first(content, NAMES), _first(content, ROWS)
+    if not (_are(str, names) and _are(list, rows)):
+        return None
+    units = _first(content, UNIT)
+    told = [*(units if _are(str, units) else []), *[''] * len(names)]
+    return _columns([_with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
+
+
+def _columns(names: Sequence[str], rows: list[Any], content: Mapping[str, Any]) -> Content:
+    """Return rows, or columns of the same number as the names, by their names."""
+    count = len(names)
+    are_rows = all(len(row) == count for row in rows)
+    are_columns = len(rows) == count and len({*map(len, rows)}) == 1
+    if are_rows and are_columns and INDEX not in content:
+        raise Unreadable(
+            f'{count} lists of {count} numbers each may be its rows or its columns: write a '
+            'record for each time'
+        )
+    if not are_rows and not are_columns:
+        raise Unreadable(f'its lists must hold {count} cells each, one for a name')
+    held = [*zip(*rows, strict=True)] if are_rows else rows
+    table = {name: list(column) for name, column in zip(names, held, strict=True)}
+    index = content.get(INDEX)
+    counts = list(range(len(rows)))
+    plain = not isinstance(index, list) or index == counts or not are_rows
+    return table if plain else {INDEX: index} | table
+
+
+def _header_row(content: Content) -> Content:
+    """Return a list of rows of which the first holds the names."""
+    if not _are(list, content) or not _are(str, content[0]) or len(content) < 2:
+        return None
+    return _columns(content[0], content[1:], {INDEX: None})
+
+
+def _channels(content: Content) -> Content:
+    """Return channels with a name, a unit and values each, in a list or by their names."""
+    if not isinstance(content, dict):
+        return None
+    listed = next((content[key] for key in CHANNELS if _are(dict, content.get(key))), None)
+    if listed is None or not all(isinstance(_first(one, VALUES), list) for one in listed):
+        named = {name: one for name, one in content.items() if isinstance(one, dict)}
+        if not named or not all(isinstance(_first(one, VALUES), list) for one in named.values()):
+            return None
+        listed = [{'name': name} | one for name, one in named.items()]
+    table: dict[str, Any] = {}
+    for number, one in enumerate(listed):
+        name = _first(one, NAME) or f'channel {number + 1}'
+        times = _first(one, TIMES)
+        if isinstance(times, list) and times not in table.values():
+            table['time' if 'time' not in table else f'{name} time'] = times
+        table[_with_unit(name, _first(one, UNIT))] = _first(one, VALUES)
+    return _beside(content) | table
+
+
+def _beside(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the numbers that stand beside signals, of which one may be their period."""
+    return {key: one for key, one in content.items() if isinstance(one, int | float | str)}
+
+
+def _labelled(content: Content) -> Content:
+    """Return what pandas writes by columns or by its index: {name: {label: value}} or reversed."""
+    if not isinstance(content, dict) or len(content) < 2:
+        return None
+    parts = list(content.values())
+    if not _are(dict, parts) or any(part.keys() != parts[0].keys() for part in parts):
+        return None
+    by_columns = all(map(_is_number, parts[0])) and len(parts[0]) > 1
+    if not by_columns and not all(map(_is_number, content)):
+        return None
+    table = (
+        {name: list(part.values()) for name, part in content.items()}
+        if by_columns
+        else {name: [part[name] for part in parts] for name in parts[0]}
+    )
+    labels = list(parts[0] if by_columns else content)
+    plain = labels == list(map(str, range(len(labels))))
+    return table if plain else {INDEX: [float(label) for label in labels]} | table
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _nested_records(content: Content) -> Content:
+    """Return records whose cells are records as flat ones: x.position, or a value and its unit."""
+    if not _are(dict, content) or not any(isinstance(one, dict) for one in content[0].values()):
+        return None
+    records = [dict(_flat(record)) for record in content]
+    units: dict[str, str] = {}
+    for name in dict.fromkeys(name for record in records for name in record):
+        bare = BRACKETS.sub('', name).strip()
+        if units.setdefault(bare, name) != name:
+            raise Unreadable(f'its records state {units[bare]} and {name}: give both in one unit')
+    return records
+
+
+def _flat(record: Mapping[str, Any], before: str = '') -> list[tuple[str, Any]]:
+    found = []
+    for key, value in record.items():
+        name = f'{before}{key}'
+        if isinstance(value, dict) and 'value' in value:
+            found.append((_with_unit(name, _first(value, UNIT)), value['value']))
+        elif isinstance(value, dict):
+            found += _flat(value, f'{name}.')
+        else:
+            found.append((name, value))
+    return found
+
+
+def _within(content: Content) -> Content:
+    """Return the only part that is a table in any layout, with the numbers beside it."""
+    if not isinstance(content, dict) or any(isinstance(one, list) for one in content.values()):
+        return None
+    parts = [one for one in content.values() if isinstance(one, dict) and _holds_lists(one)]
+    if len(parts) != 1:
+        return None
+    table = plain_table(parts[0])
+    return _beside(content) | table if isinstance(table, dict) else table
+
+
+def _holds_lists(content: Content) -> bool:
+    return isinstance(content, dict) and any(
+        isinstance(one, list) or _holds_lists(one) for one in content.values()
+    )
+
+
+LAYOUTS: tuple[Callable[[Content], Content], ...] = (
+    _named_rows,
+    _header_row,
+    _channels,
+    _labelled,
+    _nested_records,
+    _within,
+)
+"""Readers of a layout each, which return None for another one."""
