@@ -22,7 +22,13 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed, stays_in_gaps
+from ballscrew_monitor.recordings.tables.amounts import (
+    are_amounts,
+    brakes_always,
+    fault_of_speed,
+    slopes,
+    stays_in_gaps,
+)
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -51,6 +57,7 @@ from ballscrew_monitor.recordings.tables.series import (
     of_amounts,
     OF_SLOPE,
     of_slope,
+    unclear_brake,
     unclear_direction,
     unclear_factors,
     unclear_gaps,
@@ -954,6 +961,11 @@ class _Guesser:
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
+        elif kind in MOTOR and 'load' not in self.used[name]:
+            speed = data['speed'] if 'speed' in data else slopes(data['position'])
+            if brakes_always(data[kind], speed):
+                scale, place['scale'] = chosen[kind].scale, None
+                self.unstated.append(unclear_brake(name, kind, place['column'], scale))
 
     def _unit_of_load(self, name: str) -> str:
         """Return why the unit of a force is open, and what the load may be of instead."""
