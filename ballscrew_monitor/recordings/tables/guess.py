@@ -49,6 +49,7 @@ from ballscrew_monitor.recordings.tables.marks import (
     valid_cells,
 )
 from ballscrew_monitor.recordings.tables.names import Named, read_name
+from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
@@ -461,6 +462,7 @@ class _Guesser:
                     values, dated = self.data[days.column] + values, {'date': days.column}
             elif one.kind != 'time' and not self._is_surely_time(one, values):
                 continue
+            self._refuse_other_table(one, values)
             if fault := self._fault(one, values):
                 self.not_times.append(f'column {short(repr(one.column))}: {fault}')
                 continue
@@ -499,6 +501,18 @@ class _Guesser:
             gate.finish()
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
+
+    def _refuse_other_table(self, one: Named, values: Array) -> None:
+        """Raise InputError for rows at the end of a whole log that are of another table."""
+        holes = self.table.readings[one.column].holes[0]
+        if len(values) < self.table.rows or holes > FEW_HOLES * self.table.rows:
+            return
+        rising = np.diff(values[np.isfinite(values)])
+        step = float(np.median(rising[rising > 0.0])) if (rising > 0.0).any() else 0.0
+        first = max(len(values) - TAIL, 0)
+        if step and (other := other_table(values[first:], self.first_row + first, step)):
+            column = short(repr(one.column))
+            raise InputError(f'log {self.path}: column {column}: {other}: {TAKE_OUT}')
 
     def _parts_of_seconds(self, one: Named, values: Array) -> str:
         """Return the column of the parts of whole seconds, where rows spread in them miss it."""

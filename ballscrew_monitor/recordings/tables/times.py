@@ -12,6 +12,7 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
+from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
 from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
@@ -253,12 +254,14 @@ class Times:
         silence = Silence()
         self._spread: Spread | None = None
         self._even: EvenRows | None = None
+        self._tail = np.zeros(0)
         with shown(table.rows, 'times looked through') as show:
             for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
                 known = np.isfinite(times)
                 rows = row + np.flatnonzero(known)
                 self.gate.add(times[known], rows)
                 self._course.add(times[known])
+                self._tail = np.append(self._tail, times)[-TAIL:]
                 if group.holes:
                     silence.add(times[known], rows)
                 show((row + len(times) - table.first_row) / table.rows)
@@ -459,9 +462,14 @@ class Times:
         if self.gate.shared > SHARED:
             self._spread = Spread.of(self.gate)
         fault = self.gate.fault() if self.group.is_motion else self.gate.fault_of_span()
+        where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
         if any(fault):
-            where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
             raise InputError(f'{where}: {fault[0]}: {fault[1]}')
+        few = self.group.holes <= FEW_HOLES * self._table.rows
+        if self.group.is_motion and few and not self.group.hold:
+            row = self._table.first_row + self._table.rows - len(self._tail)
+            if other := other_table(self._tail, row, self.gate.step):
+                raise InputError(f'{where}: {other}: {TAKE_OUT}')
 
     def _is_wall(self) -> bool:
         """Return True if the times are those of a clock on the wall, which may be set back."""
