@@ -15,7 +15,9 @@ import math
 
 from ballscrew_monitor.recordings.tables.cells import Array
 import numpy as np
+from numpy.typing import NDArray
 
+Flags = NDArray[np.bool_]
 Block = tuple[int, Array, dict[str, Array]]
 """The row in the file of the first of some rows, their times [s] and their columns."""
 
@@ -163,13 +165,13 @@ def _rows(steps: Array, *, counts: bool) -> EvenRows:
     return EvenRows(step=usual, counts=counts)
 
 
-def _misses(amounts: Array, steps: Array, moving: Array) -> bool:
+def _misses(amounts: Array, steps: Array, moving: Flags) -> bool:
     """Return True if a way is far longer than those beside it, in a step that is long as well."""
     beside = np.maximum(amounts[:-2], amounts[2:])
     far = (amounts[1:-1] > MISSING * beside) & (steps[1:-1] > MISSING)
     return bool((far & moving[:-2] & moving[1:-1] & moving[2:]).any())
 
 
-def _roughness(slopes: Array, usual: float, pairs: Array) -> float:
+def _roughness(slopes: Array, usual: float, pairs: Flags) -> float:
     """Return how much slopes [-] change from row to row in some pairs, jumps counted as usual."""
     return float(np.minimum(np.abs(np.diff(slopes))[pairs], usual).sum())

@@ -64,7 +64,8 @@ class Signals:
 
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
     to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
-    reason why a part of the file is not among them, by its name.
+    reason why a part of the file is not among them, by its name, and `more_rows` the records there
+    of the same signals.
 
     """
 
@@ -76,6 +77,7 @@ class Signals:
     factors: str = ''
     unclear_period: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    more_rows: int = 0
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -152,7 +154,7 @@ def _json(path: Path) -> Signals:
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
-    left_out, factors = {}, ''
+    left_out, factors, more_rows = {}, '', 0
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
@@ -160,11 +162,18 @@ def _json(path: Path) -> Signals:
         if not records:
             return Signals(frame=_side_by_side(lists), factors=factors)
         content = lists[records[0]]
+        more_rows = sum(_rows_alike(content, lists[key]) for key in records[1:])
         left_out = dict.fromkeys(records[1:], f'the records of {records[0]} come before it')
     if not _are_all(dict, content):
         raise TypeError
     frame = pl.from_dicts(content, infer_schema_length=None)
-    return Signals(frame=frame, left_out=left_out, factors=factors)
+    return Signals(frame=frame, left_out=left_out, more_rows=more_rows, factors=factors)
+
+
+def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
+    """Return how many other records there are if they are of the signals of some, else 0."""
+    held = [one[0].keys() if isinstance(one[0], dict) else set() for one in (records, others)]
+    return len(others) if held[0] and held[0] <= held[1] else 0
 
 
 def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[str]:

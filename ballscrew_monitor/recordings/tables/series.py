@@ -82,7 +82,8 @@ class Series:
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns], `run_begins` the first of each run and `run_borders`
-    those in the pauses between them; `unread` says why parts of the file are not read. Columns of
+    those in the pauses between them; `unread` says why parts of the file are not read, `more_rows`
+    of which have the same columns. Columns of
     one time are a group, of which `places` names that of each quantity. The rows themselves are
     read when they are asked for.
 
@@ -97,6 +98,7 @@ class Series:
     run_borders: tuple[int, ...]
     notes: tuple[str, ...]
     unread: Mapping[str, str]
+    more_rows: int
     mapping: TableMap
     places: Mapping[str, int]
     _times: tuple[Times, ...]
@@ -226,10 +228,10 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     _look_at_slopes(held, turns, times)
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
-    unread = table.source.unread(columns)
+    unread, more_rows = table.source.unread(columns), table.source.rows_alike(columns)
     return Series(
         count=sum(one.count for one in times),
-        rows=tuple(one.count if one.group.hold else one.promised for one in times),
+        rows=tuple((one.count if one.group.hold else one.promised) + more_rows for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
@@ -244,6 +246,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
             *dict.fromkeys(notes),
         ),
         unread=unread,
+        more_rows=more_rows,
         mapping=held,
         places={name: at for at, one in enumerate(times) for name in one.group.columns},
         _times=tuple(times),

@@ -371,8 +371,8 @@ class Times:
             found.append(
                 f'{log} {self.gate.late} rows are earlier than the row before, they were sorted'
             )
-        for manner in filter(None, (self._spread, self._even)):
-            found.append(f'{log} {manner.words}')
+        found += [f'{log} {self._spread.words}'] if self._spread else []
+        found += [f'{log} {self._even.words}'] if self._even else []
         found += [f'{log} {one}' for one in self.gate.words()]
         if self.count < 2:
             return found
