@@ -3,9 +3,9 @@
 """
 Rows that follow each other evenly though their stamps are rounded, or come early and late.
 
-A slope over such stamps is none: at 400 Hz stamps of milliseconds are 2 and 3 ms apart. Where the
-ways from row to row are even and those stamps are not, the rows are, and their times are the line
-through the stamps of a stretch.
+A slope over such stamps is no speed: at 400 Hz stamps of milliseconds are 2 and 3 ms apart. Where
+the ways from row to row are even and the stamps are not, the rows are even, and their times are
+the line through the stamps of a stretch.
 
 """
 
@@ -30,6 +30,7 @@ FEW = 0.002  # of the steps in motion
 TINY = 1e-6  # part of a step, which is no time between rows
 BETTER = 0.7  # of the roughness of slopes over others, which tells the times of rows
 MISSING = 1.4  # times the way and the step beside, where a row is missing
+UNEVEN = 0.1  # part of a step, from which on stamps disturb a slope more than noise may
 BARELY = 0.05  # of the usual way from row to row
 USUAL = 0.95  # quantile of ways from row to row
 OFTEN = 0.05  # of the steps in motion
@@ -129,6 +130,8 @@ def even_rows(stamps: Array, places: Array) -> EvenRows | None:
     off = [np.abs(steps / rows.step - each) for rows, each in zip(maybe, passed, strict=True)]
     moving &= np.abs(steps) <= LONG * max(rows.step for rows in maybe)
     uneven = moving & (np.maximum(*off) > EVEN)
+    if not uneven.any():
+        return None
     pairs = moving[1:] & moving[:-1] & (uneven[1:] | uneven[:-1])
     most = usual_way / maybe[1].step
     by_stamps = _roughness(moved / np.maximum(steps, TINY * maybe[1].step), most, pairs)
@@ -139,16 +142,16 @@ def even_rows(stamps: Array, places: Array) -> EvenRows | None:
     if float((off[0][moving] > COUNTING).mean()) > FEW:
         by_rows[0] = math.inf
     best = int(np.argmin(by_rows))
-    uneven = moving & (off[best] > EVEN)
-    if not uneven.any():
+    off_best = off[best][moving]
+    if not (off_best > EVEN).any():
         return None
     if by_rows[best] < BETTER * by_stamps:
         if not maybe[best].counts and _misses(amounts, steps / maybe[best].step, moving):
             raise ValueError('rows are missing, and the stamps of the others are too coarse')
         return maybe[best]
-    if by_stamps < BETTER * by_rows[best] or uneven.sum() < OFTEN * moving.sum():
+    if by_stamps < BETTER * by_rows[best] or float((off_best > UNEVEN).mean()) < OFTEN:
         return None
-    part = float(np.median(off[best][uneven]))
+    part = float(np.median(off_best[off_best > UNEVEN]))
     raise ValueError(
         f'its rows come early and late, by {part:.0%} of a step, and its slope is even over '
         'neither their stamps nor even distances'

@@ -103,6 +103,12 @@ def test_even_stamps_and_gaps_between_them_stay_as_they_are():
     assert even_rows(times[kept], place_at(times[kept])) is None
 
 
+def test_noise_of_a_position_beside_stamps_of_few_digits_asks_for_nothing():
+    times = rows_of(300.0)
+    noise = np.random.default_rng(3).normal(0.0, 0.05, len(times))
+    assert even_rows(np.round(times, 4), place_at(times) + noise) is None
+
+
 def test_rows_that_miss_between_coarse_stamps_are_a_question():
     times = rows_of(8.0)[np.r_[0:30, 31:60, 61:80]]
     with pytest.raises(ValueError, match='rows are missing'):
