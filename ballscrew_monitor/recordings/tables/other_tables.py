@@ -51,21 +51,21 @@ def other_table(times: Array, row: int, step: float) -> str:
 
 def _goes_back(before: Array, part: Array, step: float) -> bool:
     """Return True if the rows of a part [s] are far before the latest one, and no run."""
-    if before.max() - part[0] <= FAR * np.ptp(before):
-        return False
-    return len(part) < 2 or not step / OTHER < np.median(np.diff(part)) < step * OTHER
+    far = FAR * np.ptp(before)
+    if before.max() - part[0] <= far or np.diff(before).min() < -far:
+        return False  # a counter that overflows, or runs
+    return len(part) < 2 or not step / OTHER < _step(part) < step * OTHER
 
 
 def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> bool:
     """Return True if the rows of a part [s] follow each other otherwise than those before it."""
     quantile, most = EVEN
     steps = np.diff(before)
-    if float(np.quantile(steps[steps >= 0.0], quantile)) > most * step:
+    if float(np.quantile(steps[steps > 0.0], quantile)) > most * step:
         return False  # no even log
     if len(part) < 2:
         return is_apart and part[0] - before[-1] > LONG * step
-    usual = float(np.median(np.diff(part)))
-    return (is_apart or len(part) >= AGAIN) and not step / OTHER < usual < step * OTHER
+    return (is_apart or len(part) >= AGAIN) and not step / OTHER < _step(part) < step * OTHER
 
 
 def _rows(first: int, last: int) -> str:
@@ -74,4 +74,10 @@ def _rows(first: int, last: int) -> str:
 
 def _distance(part: Array) -> str:
     """Return how far the rows of a part are from each other, in words."""
-    return f'are {np.median(np.diff(part)):.3g} s apart,' if len(part) > 1 else 'stands alone,'
+    return f'are {_step(part):.3g} s apart,' if len(part) > 1 else 'stands alone,'
+
+
+def _step(times: Array) -> float:
+    """Return the usual step between times that differ [s], 0 if none do."""
+    steps = np.diff(times)
+    return float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
