@@ -26,7 +26,7 @@ LONGEST_AXIS = 20.0  # [m]
 FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
 FEWEST_STRETCHES = 12  # of a short motion
-TOGETHER = 16  # rows of a stretch, at least, whose stamps may be rounded
+TOGETHER = 8  # rows of a stretch, at least, whose stamps may be rounded
 ROUNDED = 1e-3  # of a turn, by which a scale of few digits goes beyond one
 FULL = frozenset(
     round(count * part, 9)

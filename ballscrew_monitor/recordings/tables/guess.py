@@ -975,11 +975,19 @@ class _Guesser:
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
-        elif kind in MOTOR and 'load' not in self.used[name]:
+        elif kind in MOTOR and 'load' not in self.used[name] and not self._is_apart(name, kind):
             speed = data['speed'] if 'speed' in data else slopes(data['position'])
             if brakes_always(data[kind], speed):
                 scale, place['scale'] = chosen[kind].scale, None
                 self.unstated.append(unclear_brake(name, kind, place['column'], scale))
+
+    def _is_apart(self, name: str, kind: str) -> bool:
+        """Return True if a column of an axis may have other times than its motion."""
+        one, motion = (
+            self.axes[name].get(each) or self.axes[name]['position'] for each in (kind, 'speed')
+        )
+        groups = {self.groups.get(each.column, '') for each in (one, motion)}
+        return len(groups) > 1 or are_apart(self.table, one.column, motion.column)
 
     def _unit_of_load(self, name: str) -> str:
         """Return why the unit of a force is open, and what the load may be of instead."""

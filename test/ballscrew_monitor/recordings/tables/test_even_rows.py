@@ -5,6 +5,7 @@
 import contextlib
 
 from ballscrew_monitor.recordings.tables import sources
+from ballscrew_monitor.recordings.tables.estimates import way_per_speed
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import fits_of, read_series
@@ -181,3 +182,12 @@ def test_rounded_stamps_contradict_no_speed_beside_its_position(series_of, rate,
     for (rows,) in series.blocks():
         fit.add(rows)
     assert not fit.note()
+
+
+@pytest.mark.parametrize('rate', [7.0, 8.0, 12.0, 60.0, 400.0, 700.0])
+def test_a_speed_of_rounded_stamps_makes_its_position(rate):
+    times = rows_of(rate)
+    quantum = {7.0: 0.1, 8.0: 0.1, 12.0: 0.05, 60.0: 0.01}.get(rate, 0.001)
+    stamps = np.round(times / quantum) * quantum
+    way = way_per_speed((stamps, place_at(times)), (stamps, speed_at(times)))
+    assert way == pytest.approx(1.0, rel=0.02)
