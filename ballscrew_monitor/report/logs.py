@@ -18,6 +18,8 @@ PRODUCTS = (JUDGED, STATES, EVENTS)
 SETTINGS = ('.yaml', '.yml', '.toml')
 NO_LOGS = (*SETTINGS, '.md', '.html', '.py', '.pdf', '.png', '.npz', '.active')
 """Endings of what may lie beside recordings; settings are named nowhere."""
+BESIDE_SQLITE = ('.db3-wal', '.db3-shm', '.db3-journal')
+"""Endings of what is read with the file of SQLite beside it."""
 MOST_NAMED = 5  # files that are left out, for one reason
 _UNSAFE = re.compile(r'[^\w.-]+')
 
@@ -120,7 +122,7 @@ def _others(folder: Path, logs: Sequence[Path], out: Path | None) -> Iterator[Pa
     """Yield the files below a folder that are no recordings, nor settings of any."""
     if not folder.is_dir():
         return
-    own = (*SETTINGS, *ENDINGS, ACTIVE) if folder in logs else SETTINGS
+    own = (*SETTINGS, *ENDINGS, *BESIDE_SQLITE, ACTIVE) if folder in logs else SETTINGS
     for file in _files(folder, ('',)):
         if file not in logs and not file.name.lower().endswith(own) and file.name[0] != '.':
             yield file

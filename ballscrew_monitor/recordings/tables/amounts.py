@@ -9,6 +9,9 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 import numpy as np
 
+STEADY = 0.02  # of the usual speed, by which it changes from row to row at most
+FAST = 0.2  # of the usual speed, from which on friction is told
+ALWAYS = 0.9  # of the steady rows in each direction
 MANY = 8  # rows that tell whether torques are amounts
 CLEARLY = 2.0  # times the sum of squares of the better of two readings
 BARELY = 0.05  # of an amount is noise about zero
@@ -129,6 +132,29 @@ def is_magnitude(torque: Array, speed: Array, *, makes_load: bool) -> bool | Non
     if max(amounts, signed) < CLEARLY * min(amounts, signed):
         return None
     return None if signed < amounts and makes_load else amounts < signed
+
+
+def brakes_always(torque: Array, speed: Array) -> bool:
+    """
+    Return True if a torque [-] is against the motion at steady speeds in both directions.
+
+    Friction asks for one that goes with it. A weight, or a force that pulls to one side, is
+    against one direction alone; what accelerates the axis is not steady.
+
+    """
+    amounts = np.abs(speed)
+    usual = _usual(amounts[np.isfinite(amounts)])
+    if len(speed) < MANY:
+        return False
+    changes = np.abs(np.gradient(np.convolve(np.nan_to_num(speed), np.ones(5) / 5, 'same')))
+    fast = np.isfinite(torque) & (torque != 0.0) & (amounts > FAST * usual)
+    steady = fast & (changes <= STEADY * usual)
+    shares = []
+    for way in (speed > 0.0, speed < 0.0):
+        rows = way & (steady if (steady & way).sum() >= MANY else fast)
+        against = np.sign(torque[rows]) == -np.sign(speed[rows])
+        shares.append(float(against.mean()) if len(against) >= MANY else 0.0)
+    return min(shares) >= ALWAYS
 
 
 def slopes(positions: Array) -> Array:

@@ -25,6 +25,8 @@ ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
 FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
+FEWEST_STRETCHES = 12  # of a short motion
+TOGETHER = 8  # rows of a stretch, at least, whose stamps may be rounded
 ROUNDED = 1e-3  # of a turn, by which a scale of few digits goes beyond one
 FULL = frozenset(
     round(count * part, 9)
@@ -97,7 +99,7 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
     seconds, speeds = _longest_run(*speed)
     if min(len(places), len(speeds)) < FEW:
         return math.nan
-    every = max(len(places) // STRETCHES, 1)
+    every = max(len(places) // STRETCHES, min(len(places) // FEWEST_STRETCHES, TOGETHER), 1)
     ways = np.append(0.0, np.cumsum((speeds[1:] + speeds[:-1]) / 2 * np.diff(seconds)))
     times, places = times[::every], places[::every]
     steps, moved = np.diff(times), np.diff(places)

@@ -72,7 +72,8 @@ class Signals:
 
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
     to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
-    reason why a part of the file is not among them, by its name.
+    reason why a part of the file is not among them, by its name, and `more_rows` the records there
+    of the same signals.
 
     """
 
@@ -84,6 +85,7 @@ class Signals:
     factors: str = ''
     unclear_period: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    more_rows: int = 0
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -160,7 +162,8 @@ def _json(path: Path) -> Signals:
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
-    left_out, factors, content = {}, '', json_layouts.plain_table(content)
+    left_out, factors, more_rows = {}, '', 0
+    content = json_layouts.plain_table(content)
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
@@ -174,10 +177,17 @@ def _json(path: Path) -> Signals:
         content = json_layouts.plain_table(lists[chosen])
         others = [name for name in records if name != chosen]
         left_out = dict.fromkeys(others, f'the records of {chosen} are read')
+        more_rows = sum(_rows_alike(lists[chosen], lists[name]) for name in others)
     if not _are_all(dict, content):
         raise TypeError
     frame = pl.from_dicts(content, infer_schema_length=None)
-    return Signals(frame=frame, left_out=left_out, factors=factors)
+    return Signals(frame=frame, left_out=left_out, more_rows=more_rows, factors=factors)
+
+
+def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
+    """Return how many other records there are if they are of the signals of some, else 0."""
+    held = [one[0].keys() if isinstance(one[0], dict) else set() for one in (records, others)]
+    return len(others) if held[0] and held[0] <= held[1] else 0
 
 
 def _period_beside(content: Mapping[str, Any], lists: Iterable[str]) -> tuple[float, str]:

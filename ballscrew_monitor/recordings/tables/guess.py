@@ -22,7 +22,13 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed, stays_in_gaps
+from ballscrew_monitor.recordings.tables.amounts import (
+    are_amounts,
+    brakes_always,
+    fault_of_speed,
+    slopes,
+    stays_in_gaps,
+)
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -43,6 +49,7 @@ from ballscrew_monitor.recordings.tables.marks import (
     valid_cells,
 )
 from ballscrew_monitor.recordings.tables.names import Named, read_name
+from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
@@ -51,6 +58,7 @@ from ballscrew_monitor.recordings.tables.series import (
     of_amounts,
     OF_SLOPE,
     of_slope,
+    unclear_brake,
     unclear_direction,
     unclear_factors,
     unclear_gaps,
@@ -465,6 +473,7 @@ class _Guesser:
                     values, dated = self.data[days.column] + values, {'date': days.column}
             elif one.kind != 'time' and not self._is_surely_time(one, values):
                 continue
+            self._refuse_other_table(one, values)
             if fault := self._fault(one, values):
                 self.not_times.append(f'column {short(repr(one.column))}: {fault}')
                 continue
@@ -503,6 +512,18 @@ class _Guesser:
             gate.finish()
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
+
+    def _refuse_other_table(self, one: Named, values: Array) -> None:
+        """Raise InputError for rows at the end of a whole log that are of another table."""
+        holes = self.table.readings[one.column].holes[0]
+        if len(values) < self.table.rows or holes > FEW_HOLES * self.table.rows:
+            return
+        rising = np.diff(values[np.isfinite(values)])
+        step = float(np.median(rising[rising > 0.0])) if (rising > 0.0).any() else 0.0
+        first = max(len(values) - TAIL, 0)
+        if step and (other := other_table(values[first:], self.first_row + first, step)):
+            column = short(repr(one.column))
+            raise InputError(f'log {self.path}: column {column}: {other}: {TAKE_OUT}')
 
     def _parts_of_seconds(self, one: Named, values: Array) -> str:
         """Return the column of the parts of whole seconds, where rows spread in them miss it."""
@@ -965,6 +986,19 @@ class _Guesser:
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
+        elif kind in MOTOR and 'load' not in self.used[name] and not self._is_apart(name, kind):
+            speed = data['speed'] if 'speed' in data else slopes(data['position'])
+            if brakes_always(data[kind], speed):
+                scale, place['scale'] = chosen[kind].scale, None
+                self.unstated.append(unclear_brake(name, kind, place['column'], scale))
+
+    def _is_apart(self, name: str, kind: str) -> bool:
+        """Return True if a column of an axis may have other times than its motion."""
+        one, motion = (
+            self.axes[name].get(each) or self.axes[name]['position'] for each in (kind, 'speed')
+        )
+        groups = {self.groups.get(each.column, '') for each in (one, motion)}
+        return len(groups) > 1 or are_apart(self.table, one.column, motion.column)
 
     def _unit_of_load(self, name: str) -> str:
         """Return why the unit of a force is open, and what the load may be of instead."""

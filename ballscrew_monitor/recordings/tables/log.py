@@ -92,6 +92,8 @@ class TableLog(Bag):
             for name, pattern in self._patterns.items()
         }
         self.unread = self._series.unread
+        if self._series.more_rows:
+            self.absent = f'{self.absent}, or in parts of the file that are not read'
         self.worked_out = frozenset(
             absolute(joints_topic(self._series.of(axis, 'torque')))
             for axis in self._series.mapping.axes

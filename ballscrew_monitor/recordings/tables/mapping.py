@@ -132,7 +132,8 @@ class Column:
 
     `magnitude` says whether it holds amounts without a sign, None where that is not said; `marks`
     are the columns that say where it is valid, and where it goes backward; `hold` whether a value
-    stays until the next one is written, None where that is not said.
+    stays until the next one is written, None where that is not said. It `is_scaled` if a map says
+    how, be it by 1.
 
     """
 
@@ -144,6 +145,7 @@ class Column:
     magnitude: bool | None = None
     marks: Marks = Marks()
     hold: bool | None = None
+    is_scaled: bool = False
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -420,6 +422,7 @@ class _Part:
             backward=part.mark('backward') if kind == 'speed' else None,
         )
         hold = None if at else part.flag('hold', None)
+        is_scaled = f'{part._prefix}.scale' in part._values
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
@@ -441,6 +444,7 @@ class _Part:
             magnitude=magnitude,
             marks=marks,
             hold=hold,
+            is_scaled=is_scaled,
         )
 
 

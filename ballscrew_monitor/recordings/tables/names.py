@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 import dataclasses
 import re
 
@@ -54,6 +54,16 @@ OTHERS = frozenset(
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
+OF_ANOTHER_PART = ELSEWHERE | frozenset(
+    'hydraulic hydraulik gearbox gear getriebe reducer spindle spindel controller control '
+    'regler steuerung cpu board chip processor inverter converter umrichter transformer sink '
+    'heatsink battery brake bremse clutch chuck chiller cooler cooling heater kühl kühlung '
+    'compressor pump pumpe tank reservoir water wasser encoder housing gehäuse bed frame bett '
+    'workpiece werkstück tool werkzeug table tisch inlet outlet supply return hall halle outside '
+    'outdoor environment exhaust fan alarm warning trip'.split()
+)
+"""Words of a temperature that is not that of the screw or its oil, whatever else they name."""
+BEARINGS = frozenset('bearing bearings lager'.split())
 MEASURED = frozenset(
     'actual act feedback fb measured meas encoder enc real pv ist istwert'.split()
 )
@@ -208,8 +218,9 @@ def _of_drive(match: re.Match[str]) -> str:
 
 
 def is_of_the_screw(column: str) -> bool:
-    """Tell whether the name of a column says that it is about the screw or its oil."""
-    return bool(OF_THE_SCREW & set(words_of(column)))
+    """Return True if the name of a column says that it is about the screw or its oil."""
+    words = set(words_of(column))
+    return bool(OF_THE_SCREW & words) and not BEARINGS & words
 
 
 def turning_unit(column: str) -> str:
@@ -251,7 +262,7 @@ def _kind(words: Sequence[str]) -> str:
     if OTHERS & set(words):
         return ''
     found = [kind for word in words for kind, known in KINDS.items() if word in known]
-    if not found or (found[-1] == 'temperature' and ELSEWHERE & set(words)):
+    if not found or (found[-1] == 'temperature' and _is_of_another_part(set(words))):
         return ''
     is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
     return '' if is_quality else found[-1]
@@ -284,6 +295,12 @@ def told_by_units(named: Sequence[Named]) -> list[str]:
         if set(words_of(one.column)) & KINDS['load']
         and not set(words_of(one.column)) & KINDS[one.kind]
     ]
+
+
+def _is_of_another_part(words: Set[str]) -> bool:
+    """Return True if words are of a temperature of something else than a screw, its nut or oil."""
+    alone = BEARINGS & words and not OF_THE_SCREW & words
+    return bool(alone or (OF_ANOTHER_PART | WANTED) & words)
 
 
 def _kind_by_unit(column: str, place: str) -> str:

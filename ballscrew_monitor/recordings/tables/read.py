@@ -213,6 +213,7 @@ def look_through(
         readings=readings,
         rows=rows,
         notes=(
+            *source.notes,
             *short_rows,
             *(one.note for one in readings.values() if one.note),
             *_decided(source, found, decision),

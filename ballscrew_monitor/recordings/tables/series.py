@@ -17,9 +17,11 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.amounts import (
     are_amounts,
+    brakes_always,
     fault_of_slope,
     fault_of_speed,
     opposes,
+    slopes,
     stays_in_gaps,
 )
 from ballscrew_monitor.recordings.tables.cells import Array
@@ -29,7 +31,15 @@ from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, 
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, run_offsets
-from ballscrew_monitor.recordings.tables.times import groups_of, in_step, joined, line, Rows, Times
+from ballscrew_monitor.recordings.tables.times import (
+    groups_of,
+    in_step,
+    joined,
+    line,
+    Rows,
+    SHOWING,
+    Times,
+)
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 from ballscrew_monitor.settings.parameters import MOTOR_TORQUE
 import numpy as np
@@ -41,7 +51,6 @@ BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 MOST_NAMED = 5  # parts of a file in a sentence
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
-SHOWING = 100_000  # of the first rows, which show whether a position has a slope
 DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
 OF_SLOPE = 'the speed is the slope of the position'
 OF_ONE_TURN = (
@@ -59,6 +68,7 @@ ONE_SIGN = {
 }
 """What makes a sign doubtful, by quantity."""
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
+TOGETHER = 16  # rows whose way is compared with their speed
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
 
@@ -72,7 +82,8 @@ class Series:
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns], `run_begins` the first of each run and `run_borders`
-    those in the pauses between them; `unread` says why parts of the file are not read. Columns of
+    those in the pauses between them; `unread` says why parts of the file are not read, `more_rows`
+    of which have the same columns. Columns of
     one time are a group, of which `places` names that of each quantity. The rows themselves are
     read when they are asked for.
 
@@ -87,6 +98,7 @@ class Series:
     run_borders: tuple[int, ...]
     notes: tuple[str, ...]
     unread: Mapping[str, str]
+    more_rows: int
     mapping: TableMap
     places: Mapping[str, int]
     _times: tuple[Times, ...]
@@ -210,14 +222,16 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
     _check_directions(path, held, table, turns)
+    _check_brakes(path, held, table, turns)
     _check_gaps(path, held, table)
     _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
+    _look_at_slopes(held, turns, times)
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
-    unread = table.source.unread(columns)
+    unread, more_rows = table.source.unread(columns), table.source.rows_alike(columns)
     return Series(
         count=sum(one.count for one in times),
-        rows=tuple(one.count if one.group.hold else one.promised for one in times),
+        rows=tuple((one.count if one.group.hold else one.promised) + more_rows for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
@@ -232,6 +246,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
             *dict.fromkeys(notes),
         ),
         unread=unread,
+        more_rows=more_rows,
         mapping=held,
         places={name: at for at, one in enumerate(times) for name in one.group.columns},
         _times=tuple(times),
@@ -317,6 +332,18 @@ def _check_slopes(
             )
 
 
+def _look_at_slopes(mapping: TableMap, turns: Mapping[str, float], times: Sequence[Times]) -> None:
+    """Take the rows of positions that tell a speed as even where they are; may ask."""
+    for axis in mapping.axes:
+        name = _motion(axis).name
+        if 'speed' in axis.columns or mapping.time is None:
+            continue
+        counted = Turns(turns[name]).counted if name in turns else np.asarray
+        group = next(one for one in times if name in one.group.columns)
+        if not group.group.hold:
+            group.look_at_slope(name, counted)
+
+
 def _check_directions(
     path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]
 ) -> None:
@@ -331,6 +358,31 @@ def _check_directions(
             raise InputError(
                 f'log {path}: {unclear_direction(axis.name, speed.name, position.name)}'
             )
+
+
+def _check_brakes(path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]) -> None:
+    """Raise InputError for a torque that brakes in both directions, of which a load is made."""
+    for axis in mapping.axes:
+        kind = next((one for one in MOTOR if one in axis.columns), '')
+        if not kind or not axis.load_from:
+            continue
+        column, motion = axis.columns[kind], _motion(axis)
+        apart = column.time != motion.time or are_apart(table, column.name, motion.name)
+        if column.magnitude or column.is_scaled or apart:
+            continue
+        data = _sampled(axis, table, turns)
+        speed = data['speed'] if 'speed' in data else slopes(data['position'])
+        if brakes_always(data[kind], speed):
+            raise InputError(f'log {path}: {unclear_brake(axis.name, kind, column.name)}')
+
+
+def unclear_brake(axis: str, kind: str, column: str, scale: float = 1.0) -> str:
+    """Return what decides whether a torque against all motion has the wrong sign."""
+    return (
+        f'state axes.{axis}.{kind}.scale in the map, {-scale:g} if the sign of {short(column)} is '
+        f'turned, {scale:g} if a load drives the axis both ways: it is against the motion in both '
+        'directions, at steady speeds too, where friction asks for a torque that goes with it'
+    )
 
 
 def unclear_direction(axis: str, speed: str, position: str) -> str:
@@ -640,7 +692,13 @@ class Fit:
         expected = (speed[1:] + speed[:-1]) / 2 * steps
         moved = np.diff(position)
         good = np.isfinite(expected) & np.isfinite(moved) & (steps <= self._longest)
-        moved, expected = moved[good], expected[good]
+        if not good.any():
+            return
+        # Over several rows together the stamps may be rounded.
+        moved, expected = (
+            np.add.reduceat(np.where(good, each, 0.0), np.arange(0, len(good), TOGETHER))
+            for each in (moved, expected)
+        )
         with np.errstate(over='ignore', invalid='ignore'):
             self._across += float(moved @ expected)
             self._by_speed += float(expected @ expected)

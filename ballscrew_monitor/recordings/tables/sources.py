@@ -27,8 +27,8 @@ from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_sep
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, read_sheet
-from ballscrew_monitor.recordings.words import listed, short
+from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
+from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -107,8 +107,10 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`. `left_out` says why other sheets or arrays are not read; names of a source that
-    `is_grouped` begin with that of a group. `short` are the rows of too few cells since it began.
+    is one `sheet`. `left_out` says why other sheets or arrays are not read, `more_rows` of which
+    are of the same columns, `lengths` how many cells columns of groups hold; `notes` say what is
+    odd about it. Names of a source that `is_grouped` begin with that of a group. `short` are
+    the rows of too few cells since it began.
 
     """
 
@@ -119,6 +121,9 @@ class Source:
     most: float = math.inf
     sheet: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    more_rows: int = 0
+    lengths: Mapping[str, int] = dataclasses.field(default_factory=dict)
+    notes: tuple[str, ...] = ()
     is_grouped: bool = False
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
@@ -160,10 +165,21 @@ class Source:
         """Return why parts of the file are not read: also groups with none of the columns."""
         if not self.is_grouped:
             return dict(self.left_out)
-        groups = {name: name.partition(' [')[0].rpartition('.')[0] for name in self.names()}
+        groups = {name: _group_of(name) for name in self.names()}
         others = {*groups.values()} - {'', *(groups[name] for name in columns)}
         why = 'the map names none of its columns'
         return {**self.left_out, **dict.fromkeys(sorted(others), why)}
+
+    def rows_alike(self, columns: Collection[str]) -> int:
+        """Return the rows of parts that are not read though they hold the same columns."""
+        groups: dict[str, dict[str, int]] = {}
+        for name, length in self.lengths.items():
+            group = _group_of(name)
+            groups.setdefault(group, {})[name.removeprefix(f'{group}.')] = length
+        read = {_group_of(name) for name in columns}
+        names = {name.removeprefix(f'{_group_of(name)}.') for name in columns}
+        others = [held for group, held in groups.items() if group not in read]
+        return self.more_rows + sum(max(one.values()) for one in others if names <= one.keys())
 
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
@@ -190,6 +206,11 @@ class Source:
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
+def _group_of(name: str) -> str:
+    """Return the group of a column, empty for none."""
+    return name.partition(' [')[0].rpartition('.')[0]
+
+
 def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Source:
     """
     Return the table in a file, its cells as they stand; raises InputError without one.
@@ -214,12 +235,22 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
         frame = signals.frame.lazy()
         source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
         source = dataclasses.replace(
-            source, left_out=signals.left_out, is_grouped=kind in foreign.GROUPED
+            source,
+            left_out=signals.left_out,
+            more_rows=signals.more_rows,
+            is_grouped=kind in foreign.GROUPED,
+            lengths=_lengths(signals.frame) if kind in foreign.GROUPED else {},
         )
         texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
         cells = dict(zip(signals.frame.columns, source.names(), strict=True))
         return source.plain({cells[name]: column.to_list() for name, column in texts.items()})
     return _text(path, layout, _Text.of(path, head))
+
+
+def _lengths(frame: pl.DataFrame) -> dict[str, int]:
+    """Return how many cells each column of a frame holds."""
+    names = heads.unlike(frame.columns)
+    return {name: frame.height - column.null_count() for name, column in zip(names, frame)}
 
 
 def is_log(path: Path) -> bool:
@@ -347,11 +378,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     sheet = read_sheet(path, name)
     cells = sheet.cells
     _check_columns(path, cells.width)
-    rows = cells.head(LINES).iter_rows()
-    lines = [
-        Line(raw='', row=number + 1, cells=tuple(cell or '' for cell in row))
-        for number, row in enumerate(rows)
-    ]
+    lines = lines_of(cells)
     with _findable(path):
         head = heads.find_head(lines, layout)
     before = head.first - 1
@@ -365,7 +392,16 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
             'open the workbook in a spreadsheet and save it, which works them out'
         )
     source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
-    source = dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
+    rows = counted(sheet.hidden, 'row')
+    are = 'is' if sheet.hidden == 1 else 'are'
+    notes = [f'log {path}: {rows} of its sheets {are} hidden, and {are} read as all others are']
+    source = dataclasses.replace(
+        source,
+        sheet=sheet.name,
+        left_out=sheet.others,
+        more_rows=sheet.more_rows,
+        notes=tuple(notes[: sheet.hidden]),
+    )
     return source.plain(heads.cells_of(lines, head))
 
 

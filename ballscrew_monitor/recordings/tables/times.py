@@ -10,11 +10,13 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
+from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
+from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
 from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
-from ballscrew_monitor.recordings.tables.time_gate import REGULAR, SHARED, TimeGate
+from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, REGULAR, SHARED, TimeGate
 from ballscrew_monitor.recordings.words import short, Shown
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +29,7 @@ WIDTH = 1e-4  # relative, of a bin
 LARGEST = 1e19  # [ns] more than any stamp
 HELD = 1.5  # times the usual time between rows, after which a value that holds is repeated
 MOST_HELD = 1_000_000  # repeated rows in a gap: in a longer one nothing is known
+SHOWING = 100_000  # of the first rows, which show whether a position has a slope
 HUGE_GAP = 100  # times the usual time between rows
 _BINS = 2 + math.ceil(math.log(LARGEST) / math.log1p(WIDTH))
 
@@ -250,12 +253,15 @@ class Times:
         self.gate, self._course = TimeGate(wall=self._is_wall()), Course()
         silence = Silence()
         self._spread: Spread | None = None
+        self._even: EvenRows | None = None
+        self._tail = np.zeros(0)
         with shown(table.rows, 'times looked through') as show:
             for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
                 known = np.isfinite(times)
                 rows = row + np.flatnonzero(known)
                 self.gate.add(times[known], rows)
                 self._course.add(times[known])
+                self._tail = np.append(self._tail, times)[-TAIL:]
                 if group.holes:
                     silence.add(times[known], rows)
                 show((row + len(times) - table.first_row) / table.rows)
@@ -272,6 +278,28 @@ class Times:
         self._shifts = dict[int, float]()
         short = min(table.source.short.count, group.holes)
         self.promised = table.rows - group.holes + short + silence.samples(self.gate.step)
+
+    def look_at_slope(self, name: str, counted: Callable[[Array], Array]) -> None:
+        """
+        Take rows as even if the slope of a position shows that they are, whose turns are counted.
+
+        Raises InputError where their times are not known.
+
+        """
+        rows, parts = 0, []
+        for _, times, columns in self._spread_out([*self.group.time_columns, name]):
+            parts.append((times, columns[name]))
+            rows += len(times)
+            if rows > SHOWING:
+                break
+        times, places = (np.concatenate(each) for each in zip(*parts, strict=True))
+        try:
+            self._even = even_rows(times, counted(places))
+        except ValueError as error:
+            raise InputError(
+                f'log {self._table.path}: {short(name)} has no slope that is a speed: {error}: '
+                f'name a column of the speed, or {INSTEAD} where rows are even'
+            ) from None
 
     def place(
         self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]
@@ -294,7 +322,7 @@ class Times:
         else:
             self.gate.runs = self.gate.runs[:1]
         self._run_begins = np.array(run_begins)
-        if self._shifts or self._spread or self.group.hold:  # else they stay as they are
+        if self._shifts or self._spread or self._even or self.group.hold:  # else they stay
             self._course, self.count = Course(run_begins), 0
             columns = self.group.time_columns or list(self.group.columns)[:1]
             for _, times, _ in self._placed(columns):
@@ -343,8 +371,8 @@ class Times:
             found.append(
                 f'{log} {self.gate.late} rows are earlier than the row before, they were sorted'
             )
-        if self._spread:
-            found.append(f'{log} {self._spread.words}')
+        found += [f'{log} {self._spread.words}'] if self._spread else []
+        found += [f'{log} {self._even.words}'] if self._even else []
         found += [f'{log} {one}' for one in self.gate.words()]
         if self.count < 2:
             return found
@@ -372,9 +400,13 @@ class Times:
 
     def _placed(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
         """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
-        told = self._known(names)
-        told = self._spread.blocks(told) if self._spread else told
+        told = self._spread_out(names)
+        told = self._even.blocks(told) if self._even else told
         yield from self._held(told) if self.group.hold else told
+
+    def _spread_out(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        told = self._known(names)
+        return self._spread.blocks(told) if self._spread else told
 
     def _held(
         self, told: Iterable[tuple[int, Array, dict[str, Array]]]
@@ -430,9 +462,14 @@ class Times:
         if self.gate.shared > SHARED:
             self._spread = Spread.of(self.gate)
         fault = self.gate.fault() if self.group.is_motion else self.gate.fault_of_span()
+        where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
         if any(fault):
-            where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
             raise InputError(f'{where}: {fault[0]}: {fault[1]}')
+        few = self.group.holes <= FEW_HOLES * self._table.rows
+        if self.group.is_motion and few and not self.group.hold:
+            row = self._table.first_row + self._table.rows - len(self._tail)
+            if other := other_table(self._tail, row, self.gate.step):
+                raise InputError(f'{where}: {other}: {TAKE_OUT}')
 
     def _is_wall(self) -> bool:
         """Return True if the times are those of a clock on the wall, which may be set back."""

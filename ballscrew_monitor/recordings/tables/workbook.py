@@ -12,6 +12,8 @@ in a process of its own, which may use so much memory and no more.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+import contextlib
+import csv
 import dataclasses
 import functools
 import importlib
@@ -25,7 +27,7 @@ import zipfile
 import zlib
 
 from ballscrew_monitor.recordings.tables.cells import readable
-from ballscrew_monitor.recordings.tables.heads import holds_numbers, Line
+from ballscrew_monitor.recordings.tables.heads import find_head, holds_numbers, Line
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 from surrogate.files import InputError, limits
@@ -41,6 +43,7 @@ NO_DAY = '1899-12-31 '
 SHEET = b'sheetData'  # the element that holds the cells
 CELL = re.compile(rb'[<:]c[\s/>]')
 BARE_FORMULA = re.compile(rb'</f>\s*(?:<v>\s*</v>|<v\s*/>)?\s*</c>')
+HIDDEN = re.compile(rb'<(?:\w+:)?row\b[^>]*\bhidden="(?:1|true)"')
 COLUMN, ROW = '[A-Za-z]{1,7}', '[0-9]{1,19}'
 PLAIN_CELL = re.compile(f'<c r="({COLUMN})({ROW})"'.encode())
 LETTERS = 26
@@ -50,23 +53,31 @@ VALUES = ('v', 'is')  # elements that hold the value of a cell
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Sheet:
-    """A sheet: its name, its cells, and why each other sheet of its workbook is not read."""
+    """
+    A sheet: its name, its cells, and why each other sheet of its workbook is not read.
+
+    `more_rows` are those of the others that have its names, `hidden` those of all that nobody
+    sees.
+
+    """
 
     name: str
     cells: pl.DataFrame
     others: Mapping[str, str]
+    more_rows: int = 0
+    hidden: int = 0
 
 
 def read_sheet(path: Path, name: str = '') -> Sheet:
     """Return a sheet of a workbook; raises InputError, ImportError without its reader."""
     importlib.import_module('fastexcel')  # it is optional
-    _check_size(path)
+    hidden = _check_size(path)
     state = path.stat()
-    return _read_apart(path.resolve(), str(path), name, state.st_mtime_ns, state.st_size)
+    return _read_apart(path.resolve(), str(path), name, hidden, state.st_mtime_ns, state.st_size)
 
 
 @functools.lru_cache(maxsize=1)  # a log is opened again and again; its cells are a file in memory
-def _read_apart(place: Path, shown: str, name: str, *state: int) -> Sheet:
+def _read_apart(place: Path, shown: str, name: str, hidden: int, *state: int) -> Sheet:
     with tempfile.TemporaryDirectory(prefix='ballscrew_sheet_') as folder:
         target = Path(folder) / 'cells.arrow'
         inputs = {'path': shown, 'target': str(target), 'sheet': name}
@@ -74,7 +85,7 @@ def _read_apart(place: Path, shown: str, name: str, *state: int) -> Sheet:
         task = f'{__name__}:write_cells'
         read = result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
         cells = pl.read_ipc(target)  # its memory is the file, which stays though its name goes
-        return Sheet(name=read['name'], cells=cells, others=read['others'])
+        return Sheet(cells=cells, hidden=hidden, **read)
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
@@ -94,9 +105,28 @@ def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
         if only or _holds_table(cells, fewest):
             cells.write_ipc(inputs['target'])
             del others[name]
-            return {'name': name, 'others': others}
+            more = sum(_rows_alike(cells, path, other) for other in others)
+            return {'name': name, 'others': others, 'more_rows': more}
         others[name] = f'it has fewer than {fewest} rows of numbers'
     raise InputError(f'log {path}: no sheet has rows of numbers, {_held(names)}')
+
+
+def _rows_alike(cells: pl.DataFrame, path: str, name: str) -> int:
+    """Return the rows of another sheet if its columns have the names of a table, else 0."""
+    with contextlib.suppress(InputError, csv.Error, ValueError):
+        head, others = find_head(lines_of(cells)), _texts(path, name)
+        other = find_head(lines_of(others))
+        if head.named and {*head.names} <= {*other.names}:
+            return max(others.height - other.first + 1, 0)
+    return 0
+
+
+def lines_of(cells: pl.DataFrame) -> list[Line]:
+    """Return the first rows of a sheet."""
+    return [
+        Line(raw='', row=number + 1, cells=tuple(cell or '' for cell in row))
+        for number, row in enumerate(cells.head(LOOKED_AT).iter_rows())
+    ]
 
 
 def _held(names: Sequence[str]) -> str:
@@ -105,11 +135,7 @@ def _held(names: Sequence[str]) -> str:
 
 def _holds_table(cells: pl.DataFrame, fewest: int) -> bool:
     """Return True if cells have so many rows of numbers."""
-    lines = [
-        Line(raw='', row=number + 1, cells=tuple(cell or '' for cell in row))
-        for number, row in enumerate(cells.head(LOOKED_AT).iter_rows())
-    ]
-    return cells.width > 1 and holds_numbers(lines, fewest)
+    return cells.width > 1 and holds_numbers(lines_of(cells), fewest)
 
 
 def _texts(path: str, name: str) -> pl.DataFrame:
@@ -127,15 +153,23 @@ def _texts(path: str, name: str) -> pl.DataFrame:
         return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
 
 
-def _check_size(path: Path) -> None:
-    """Raise InputError if a workbook comes to more than is allowed, whatever it says of itself."""
+def _check_size(path: Path) -> int:
+    """
+    Return how many rows of a workbook are hidden.
+
+    Raises InputError if it comes to more than is allowed, whatever it says of itself.
+
+    """
     failure = f'log {path} cannot be read'
     with readable(failure, *UNPACKABLE), zipfile.ZipFile(path) as archive:
         sheets = _sheets(path, archive)
         if not sheets:  # the reader takes other workbooks, too
             raise InputError(f'{failure}: it holds no sheet of xlsx')
+        hidden = 0
         for part, size in sheets:
-            _check_cells(path, archive, part, min(max(size * SIZES, limits.SPARSE), limits.MEMORY))
+            most = min(max(size * SIZES, limits.SPARSE), limits.MEMORY)
+            hidden += _check_cells(path, archive, part, most)
+    return hidden
 
 
 def holds_formulas_alone(path: Path) -> bool:
@@ -171,14 +205,28 @@ def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo,
     return sheets
 
 
-def _check_cells(path: Path, archive: zipfile.ZipFile, part: zipfile.ZipInfo, most: int) -> None:
-    """Raise InputError if the rectangle around the cells of a sheet comes to more than `most`."""
+def _check_cells(path: Path, archive: zipfile.ZipFile, part: zipfile.ZipInfo, most: int) -> int:
+    """
+    Return how many rows of a sheet are hidden.
+
+    Raises InputError if the rectangle around its cells comes to more than `most` [bytes].
+
+    """
+    hidden = 0
+
+    def counted(texts: Iterator[bytes]) -> Iterator[bytes]:
+        nonlocal hidden
+        for text in texts:
+            hidden += len(HIDDEN.findall(text))
+            yield text
+
     try:
         with archive.open(part) as stream:
-            cells = _plain_cells(_whole_tags(stream))
+            cells = _plain_cells(counted(_whole_tags(stream)))
         if cells is None or CELL_SIZE * cells.count > most:
+            hidden = 0
             with archive.open(part) as stream:
-                cells = _cells(_whole_tags(stream))
+                cells = _cells(counted(_whole_tags(stream)))
     except (expat.ExpatError, ValueError) as error:
         raise InputError(f'log {path} cannot be read, {short(part.filename)}: {error}') from None
     if CELL_SIZE * cells.count > most:
@@ -189,6 +237,7 @@ def _check_cells(path: Path, archive: zipfile.ZipFile, part: zipfile.ZipInfo, mo
             f'cell, allowed are {allowed:.0f} MB: clear the cells far off, or save the sheet as '
             'CSV'
         )
+    return hidden
 
 
 def _whole_tags(stream: IO[bytes]) -> Iterator[bytes]:

@@ -208,3 +208,11 @@ def test_where_a_report_was_removed_another_is_made(tmp_path, refused):
     touch(*products, judged / 'notes.txt', tmp_path / logs.PAGE)
     logs.remove_report(tmp_path)
     refused('removed', logs.check_output, tmp_path)
+
+
+def test_what_sqlite_writes_beside_a_bag_is_read_with_it_and_not_left_out(tmp_path):
+    bag = tmp_path / 'bag'
+    touch(bag / 'metadata.yaml', bag / 'a_0.db3', bag / 'a_0.db3-wal', bag / 'a_0.db3-shm')
+    found = find_logs([tmp_path])
+    assert names(found, tmp_path) == ['bag']
+    assert not left_out([tmp_path], found)

@@ -8,6 +8,7 @@ import sys
 
 from ballscrew_monitor.recordings.tables import foreign
 from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 import h5py
@@ -324,3 +325,64 @@ def test_numbers_beside_the_signals_that_may_scale_them_are_named(
         rows = [dict(zip(names, row, strict=True)) for row in zip(*lists.values(), strict=True)]
         path.write_text(json.dumps(numbers | {'samples': rows}))
     assert foreign.read_signals(path, 'mat' if kind == 'mat' else 'json').factors == factors
+
+
+def records_of(begin=0.0, rows=COUNT):
+    return [
+        {'t_s': begin + TIME[row], 'x_velocity_mm_s': SPEED[row], 'x_force_N': 5.0 * SPEED[row]}
+        for row in range(rows)
+    ]
+
+
+def json_of_runs(path, others):
+    runs = {f'run{number}': records for number, records in enumerate([records_of(), *others])}
+    path.write_text(json.dumps(runs))
+
+
+def mat_of_runs(path, others):
+    runs = {
+        f'run{number}': {key: np.array([one[key] for one in records]) for key in records[0]}
+        for number, records in enumerate([records_of(), *others])
+    }
+    scipy.io.savemat(path, runs)
+
+
+def hdf_of_runs(path, others):
+    with h5py.File(path, 'w') as file:
+        for number, records in enumerate([records_of(), *others]):
+            for key in records[0]:
+                file[f'run{number}/{key}'] = [one[key] for one in records]
+
+
+MAP_OF_RUNS = {
+    'time': {'column': 't_s', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'},
+    'axes': {
+        'x': {
+            'lead_mm': 10.0,
+            'speed': {'column': 'x_velocity_mm_s', 'unit': 'mm/s'},
+            'load': {'column': 'x_force_N', 'unit': 'N'},
+        }
+    },
+}
+
+
+@pytest.mark.parametrize('others', [[], [400], [250, 30]])
+@pytest.mark.parametrize('write', [json_of_runs, mat_of_runs, hdf_of_runs])
+def test_runs_that_are_not_read_count_as_rows_that_there_should_be(tmp_path, write, others):
+    path = tmp_path / 'log.data'
+    write(path, [records_of(20.0 * (at + 1), rows) for at, rows in enumerate(others)])
+    before = '' if write is json_of_runs else 'run0.'
+    text = json.dumps(MAP_OF_RUNS)
+    for name in ('t_s', 'x_velocity_mm_s', 'x_force_N'):
+        text = text.replace(f'"{name}"', f'"{before}{name}"')
+    log = TableLog(path, make_map(json.loads(text)))
+    assert {*log.promised.values()} == {COUNT + sum(others)}
+    assert {topic.count for topic in log.topics.values()} == {COUNT}
+    assert ('not read' in log.absent) is bool(others)
+
+
+def test_events_beside_the_samples_are_no_samples(tmp_path):
+    path = tmp_path / 'log.json'
+    events = [{'t_s': 1.0, 'text': 'door'}] * 30
+    path.write_text(json.dumps({'samples': records_of(), 'events': events}))
+    assert {*TableLog(path, make_map(MAP_OF_RUNS)).promised.values()} == {COUNT}

@@ -444,7 +444,7 @@ def test_a_second_time_of_the_same_rows_is_none_of_its_own(other, guessed):
         'Time A [s]': TIME,
         'v_x [mm/s]': SPEED,
         'Time B [s]': other,
-        'x_torque [Nm]': -SPEED,
+        'x_torque [Nm]': SPEED,
     }
     made = guessed(columns, form='{:.14g}')
     assert made.content['time']['column'] == 'Time A [s]'
@@ -458,7 +458,7 @@ def test_a_second_time_in_another_unit_is_asked_for(guessed, refused, says):
         'Time A [s]': TIME,
         'v_x [mm/s]': SPEED,
         'Time B [ms]': second,
-        'x_torque [Nm]': -SPEED,
+        'x_torque [Nm]': SPEED,
     }
     made = guessed(columns, form='{:.9g}')
     assert made.content['axes']['x']['torque']['time'] is None
@@ -625,13 +625,14 @@ def test_a_column_of_a_rotary_axis_is_none_of_the_only_linear_one(guessed):
     ],
 )
 def test_a_unit_that_is_so_many_of_another_is_read(name, unit, scale, read, tmp_path, write_csv):
-    columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: -SPEED}
+    force = -SPEED if read == 'load' else SPEED
+    columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: force}
     path = write_csv(tmp_path / 'log.csv', columns)
     made = guess(path)
     assert made.content['axes']['x'][read] == {'column': name, 'scale': scale, 'unit': unit}
     assert not made.unstated
     (rows,) = [rows for (rows,) in read_series(path, make_map(made.content)).blocks()]
-    assert rows.columns[f'x.{read}'] == pytest.approx(-SPEED * scale, abs=1e-2)
+    assert rows.columns[f'x.{read}'] == pytest.approx(force * scale, abs=1e-2)
 
 
 @pytest.mark.parametrize(
@@ -663,7 +664,7 @@ def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
     ('name', 'kind', 'unit'), [('x torque [A]', 'current', 'A'), ('Effort X [N]', 'load', 'N')]
 )
 def test_the_unit_tells_what_a_torque_or_an_effort_is(name, kind, unit, guessed):
-    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: -9.0 * SPEED})
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: 9.0 * SPEED})
     assert made.content['axes']['x'][kind] == {'column': name, 'unit': unit}
 
 
@@ -686,7 +687,7 @@ def test_an_axis_in_brackets_is_no_unit(guessed):
 def test_times_may_be_numbered_or_named_after_their_column(names, guessed):
     first, second = names
     columns = {first: TIME, 'x_vel [mm/s]': SPEED, second: 1.0 + 1.25 * TIME}
-    made = guessed(columns | {'x_torque [Nm]': -SPEED}, form='{:.9g}')
+    made = guessed(columns | {'x_torque [Nm]': SPEED}, form='{:.9g}')
     assert made.content['time'] == {'column': first, 'unit': 's'}
     assert made.content['axes']['x']['torque']['time'] == second
 
@@ -721,7 +722,7 @@ def test_times_in_another_order_are_asked_for(order, tmp_path, write_csv, says):
         'A': ('Time A [s]', TIME),
         'B': ('Time B [s]', 1.0 + 1.25 * TIME),
         'v': ('v_x [mm/s]', SPEED),
-        'm': ('x_torque [Nm]', -SPEED),
+        'm': ('x_torque [Nm]', SPEED),
     }
     made = guess(write_csv(tmp_path / 'log.csv', dict(columns[one] for one in order)))
     assert made.unstated == (

@@ -119,6 +119,41 @@ def test_what_is_only_about_a_quantity_is_none(column):
     assert not read_name(column).kind
 
 
+@pytest.mark.parametrize(
+    'column',
+    [
+        'hydraulic oil temperature [°C]',
+        'gearbox oil temperature [°C]',
+        'Getriebe Öltemperatur [°C]',
+        'oil temperature setpoint [°C]',
+        'oil temperature alarm [°C]',
+        'oil tank temperature [°C]',
+        'bearing temperature [°C]',
+        'controller temperature [°C]',
+        'CPU temperature [°C]',
+        'x drive temperature [°C]',
+        'spindle bearing temperature [°C]',
+    ],
+)
+def test_a_temperature_of_something_else_is_none_of_the_oil(column):
+    assert read_name(column).kind != 'temperature'
+
+
+@pytest.mark.parametrize(
+    ('column', 'of_the_screw'),
+    [
+        ('oil temperature [°C]', True),
+        ('x nut temperature [°C]', True),
+        ('lubricant temperature actual [°C]', True),
+        ('temperature [°C]', False),
+        ('ball screw bearing temperature [°C]', False),
+    ],
+)
+def test_a_temperature_of_the_screw_or_of_nothing_may_be_that_of_the_oil(column, of_the_screw):
+    assert read_name(column).kind == 'temperature'
+    assert is_of_the_screw(column) is of_the_screw
+
+
 def test_german_words_say_what_is_measured_of_what_and_in_which_unit():
     measured, wanted = (read_name(name).rank for name in ('Lageistwert X', 'Lagesollwert X'))
     assert measured > read_name('Lage X').rank > wanted

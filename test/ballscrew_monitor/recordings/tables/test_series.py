@@ -115,6 +115,53 @@ def test_a_steady_torque_of_one_sign_is_refused_until_the_map_says_what_it_is(re
         np.testing.assert_allclose(found.torque[1:], (2.0 * signs * np.ones(400))[1:])
 
 
+def there_and_back(rate, noise=0.0):
+    """Return times [s], speeds [mm/s] and accelerations [mm/s2] of a motion with steady parts."""
+    times = np.arange(int(12 * rate)) / rate
+    knots = [0.0, 0.5, 1.0, 5.0, 5.5, 6.0, 6.5, 11.0, 11.5, 12.0]
+    speed = np.interp(times, knots, [0, 0, 75, 75, 0, 0, -40, -40, 0, 0])
+    draws = np.random.default_rng(1).normal(0.0, noise, len(times))
+    return times, speed + draws * (speed != 0.0), np.gradient(speed, times)
+
+
+@pytest.mark.parametrize('rate', [20.0, 200.0])
+@pytest.mark.parametrize('noise', [0.0, 2.0])
+@pytest.mark.parametrize(
+    ('weight', 'pull', 'inertia'), [(0.0, 0.0, 0.0), (0.0, 0.0, 0.02), (0.5, 0.3, 0.01)]
+)
+@pytest.mark.parametrize('motion', ['v', 'p'])
+def test_a_torque_against_all_motion_is_a_question(
+    tmp_path, write_csv, refused, rate, noise, weight, pull, inertia, motion
+):
+    """Friction of 1.5 N m beside a weight and a force that pulls, in [N m], and a mass."""
+    times, speed, push = there_and_back(rate, noise)
+    torque = 1.5 * np.sign(speed) + weight + pull * (speed > 0.0) + inertia * push
+    place = np.append(0.0, np.cumsum((speed[1:] + speed[:-1]) / 2 / rate))
+    axis = OF_TORQUE | {'position': {'column': 'p', 'unit': 'mm'}}
+    axis = axis if motion == 'v' else {key: axis[key] for key in axis if key != 'speed'}
+
+    def make(torque, **more):
+        stated = axis | {'torque': OF_TORQUE['torque'] | more}
+        content = {'time': {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}}
+        columns = {'t': times, 'v': speed, 'p': place, 'm': torque}
+        log = write_csv(tmp_path / 'log.csv', columns, form='{:.12g}')
+        return joined(read_series(log, make_map(content | {'axes': {'x': stated}})))
+
+    refused('against_the_motion', make, -torque)
+    for scale in (1.0, -1.0):
+        np.testing.assert_allclose(make(-torque, scale=scale).torque, -scale * torque, rtol=1e-6)
+    np.testing.assert_allclose(make(torque).torque, torque, rtol=1e-6)
+
+
+@pytest.mark.parametrize('weight', [-4.0, 4.0])
+def test_a_weight_brakes_in_one_direction_and_is_none(read, weight):
+    """It asks for 4 N m whichever way the axis goes, far more than friction of 0.5 N m."""
+    times, speed, _ = there_and_back(100.0)
+    columns = {'t': times, 'v': speed, 'm': weight + 0.5 * np.sign(speed)}
+    axis = OF_TORQUE | {'torque': OF_TORQUE['torque'] | {'magnitude': False}}
+    np.testing.assert_allclose(read(columns, axis).torque, columns['m'], rtol=1e-6)
+
+
 def test_quantities_are_those_of_the_screw(read):
     axis = AXIS | {
         'position': {'column': 'p', 'unit': 'mm'},

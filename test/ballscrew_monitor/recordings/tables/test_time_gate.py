@@ -310,9 +310,8 @@ def outcome(name, text, rate, *, appended=False):
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / 'log.csv'
         log.write_text('\n'.join([f'{name};x_vel_mm_s;x_force_N', *lines]) + '\n')
-        content = guess(log).content
         try:
-            series = read_series(log, make_map(content))
+            series = read_series(log, make_map(guess(log).content))
         except InputError:
             return None
         stamps = np.concatenate([block.stamps for (block,) in series.blocks()])[:COUNT]

@@ -251,3 +251,43 @@ def test_a_replay_says_which_sheets_it_has_not_read(books, says, tmp_path, capsy
 
 def test_sheets_without_numbers_are_named(books, refused):
     refused('no_numbers', guess, books({'Info': [('Maschine', 'DMU')], 'Text': [('a', 'b')]}))
+
+
+def book_of(path, sheets, hidden=()):
+    """Write a workbook of sheets, each its name, names of columns and number of rows."""
+    made = openpyxl.Workbook()
+    made.remove(made.active)
+    for name, names, rows in sheets:
+        sheet = made.create_sheet(name)
+        sheet.append(names)
+        for row in range(rows):
+            sheet.append([0.1 * row, *[3.0 * row] * (len(names) - 1)])
+        for row in hidden:
+            sheet.row_dimensions[row].hidden = True
+    made.save(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ('names', 'more'),
+    [
+        (['t [s]', 'x velocity [mm/s]'], 60),
+        (['x velocity [mm/s]', 't [s]', 'remark'], 60),
+        (['tool', 'radius [mm]'], 0),
+    ],
+)
+def test_a_sheet_of_the_same_names_counts_as_rows_that_there_should_be(tmp_path, names, more):
+    first = ['t [s]', 'x velocity [mm/s]']
+    sheets = [('Data', first, 100), ('Continued', names, 60)]
+    sheet = read_sheet(book_of(tmp_path / 'log.xlsx', sheets))
+    assert (sheet.name, sheet.more_rows, sheet.hidden) == ('Data', more, 0)
+    series = read_series(tmp_path / 'log.xlsx', make_map(guess(tmp_path / 'log.xlsx').content))
+    assert (series.count, series.rows) == (100, (100 + more,))
+
+
+def test_hidden_rows_of_a_workbook_are_read_and_counted_in_a_sentence(tmp_path):
+    names = ['t [s]', 'x velocity [mm/s]']
+    path = book_of(tmp_path / 'log.xlsx', [('Data', names, 100)], hidden=range(20, 50))
+    series = read_series(path, make_map(guess(path).content))
+    assert series.count == 100
+    assert any('30 rows of its sheets are hidden' in note for note in series.notes)

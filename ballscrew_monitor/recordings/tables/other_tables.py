@@ -1,0 +1,83 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rows below a log that are of another table: statistics, a spectrum, alarms.
+
+Where no line names them, their times do not go on as those of the log do: they begin after a row
+without a time, or before the times above, and are further apart, or go far back at the end.
+
+"""
+
+from ballscrew_monitor.recordings.tables.cells import Array
+import numpy as np
+
+TAIL = 4096  # rows at the end of a log that are looked at
+FEWEST = 30  # rows of a log that tell how its times go on
+OTHER = 5.0  # times the usual step, or its part, which is one of another table
+AGAIN = 5  # rows that begin again, at least, whose steps tell what they are
+FAR = 0.2  # of the time of a log, by which no row comes late
+LONG = 100.0  # times the usual step, after which a single row is not of the log
+STATISTICS = 12  # rows at the end, at most, that go back
+FEW_HOLES = 0.05  # of the rows that hold no sample: in a log with more, these part nothing
+TAKE_OUT = 'take them out if they are of another table, or split the log there'
+EVEN = 0.9, 2.0  # quantile of the steps of a log, and how many usual ones that is at most
+
+
+def other_table(times: Array, row: int, step: float) -> str:
+    """
+    Return which of the last rows of a log are of another table and why, empty for none.
+
+    Their times [s], NaN where there is none, begin in a row of the file, and rise by a usual step.
+
+    """
+    known = np.isfinite(times)
+    with np.errstate(invalid='ignore'):
+        breaks = (
+            np.flatnonzero(~(np.diff(times) >= 0.0)) + 1
+        )  # beside a row without a time as well
+    for begin in (at for at in breaks.tolist() if known[at]):
+        end = next((at for at in breaks.tolist() if at > begin), len(times))
+        before, part = times[:begin][known[:begin]], times[begin:end]
+        if len(before) < FEWEST:
+            continue
+        if _is_other(before, part, step, is_apart=not known[begin - 1]):
+            words = f'{_rows(row + begin, row + end - 1)} {_distance(part)}'
+            return f'{words} not as those above, which are {step:.3g} s apart'
+        if known[begin:].sum() <= STATISTICS and _goes_back(before, part, step):
+            words = f'{_rows(row + begin, row + len(times) - 1)} at the end'
+            return f'{words}, from {part[0]:.6g} s on, do not go on from there, as statistics do'
+    return ''
+
+
+def _goes_back(before: Array, part: Array, step: float) -> bool:
+    """Return True if the rows of a part [s] are far before the latest one, and no run."""
+    far = FAR * np.ptp(before)
+    if before.max() - part[0] <= far or np.diff(before).min() < -far:
+        return False  # a counter that overflows, or runs
+    return len(part) < 2 or not step / OTHER < _step(part) < step * OTHER
+
+
+def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> bool:
+    """Return True if the rows of a part [s] follow each other otherwise than those before it."""
+    quantile, most = EVEN
+    steps = np.diff(before)
+    if float(np.quantile(steps[steps > 0.0], quantile)) > most * step:
+        return False  # no even log
+    if len(part) < 2:
+        return is_apart and part[0] - before[-1] > LONG * step
+    return (is_apart or len(part) >= AGAIN) and not step / OTHER < _step(part) < step * OTHER
+
+
+def _rows(first: int, last: int) -> str:
+    return f'rows {first} to {last}' if last > first else f'row {first}'
+
+
+def _distance(part: Array) -> str:
+    """Return how far the rows of a part are from each other, in words."""
+    return f'are {_step(part):.3g} s apart,' if len(part) > 1 else 'stands alone,'
+
+
+def _step(times: Array) -> float:
+    """Return the usual step between times that differ [s], 0 if none do."""
+    steps = np.diff(times)
+    return float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
