@@ -31,7 +31,9 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
+from ballscrew_monitor.recordings.tables.dropouts import column_of, dropped
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
+from ballscrew_monitor.recordings.tables.interleaved import column_of_sources
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.marked import look_at_marks
 from ballscrew_monitor.recordings.tables.marks import (
@@ -43,7 +45,7 @@ from ballscrew_monitor.recordings.tables.marks import (
     valid_cells,
 )
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.own_times import is_own_time
+from ballscrew_monitor.recordings.tables.own_times import are_pairs, is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.series import (
@@ -254,10 +256,24 @@ class _Guesser:
             return
         for column, cells in look_at_marks(self.source.blocks(columns), columns)[1].items():
             if 1 < len(cells) <= MOST:
-                raise InputError(
-                    f'log {self.path}: its rows are of several axes or machines, which column '
-                    f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
-                )
+                raise self._several(column, cells)
+
+    def _several(self, column: str, cells: Sequence[str]) -> InputError:
+        """Return the error for rows of several axes or machines."""
+        return InputError(
+            f'log {self.path}: its rows are of several axes or machines, which column '
+            f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
+        )
+
+    def _refuse_sources_in_turn(self) -> None:
+        """Raise InputError for rows of several sources that a column of any name tells apart."""
+        used = {*self.table.readings, *self.mark_cells}
+        others = [name for name in self.source.names() if name not in used]
+        if others and self.clock is not None:
+            blocks = self.source.blocks(others)
+            column, cells = column_of_sources(blocks, others, self.clock[1])
+            if column:
+                raise self._several(column, cells)
 
     def _refuse_marks_of_none(self, inputs: Sequence[Named]) -> None:
         """Raise InputError for an input with a number that stands for none, as -9999."""
@@ -323,6 +339,28 @@ class _Guesser:
                     f'{short(mark["column"])} by which {short(place["column"])} is {role}, of '
                     f'{cells}; or take {role} out of the map'
                 )
+        if 'valid' not in place:
+            self._ask_for_dropouts(name, kind)
+
+    def _ask_for_dropouts(self, name: str, kind: str) -> None:
+        """Let the map say where an input is valid that stands still between two jumps."""
+        place = self.used[name][kind]
+        values = self.data[place['column']]
+        lost = dropped(values)
+        if not lost.any():
+            return
+        held = {each.column for chosen in self.axes.values() for each in chosen.values()}
+        others = [column for column in self.source.names() if column not in {*held, *self.timed}]
+        column, cells = column_of(lost, self.source.blocks(others)) if others else ('', [])
+        place['valid'] = {'column': column or None, 'cells': None}
+        told = f', while {short(column)} is one of {listed(cells)}' if column else ''
+        at = int(np.argmax(lost))
+        self.unstated.append(
+            f'state axes.{name}.{kind}.valid in the map, the column and its cells by which '
+            f'{short(place["column"])} is valid, or leave those cells empty: it jumps to '
+            f'{values[at]:g} in row {self.first_row + at} and back after '
+            f'{np.count_nonzero(lost)} rows{told}; take valid out of the map if it is so'
+        )
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -392,6 +430,7 @@ class _Guesser:
 
     def result(self) -> Guess:
         time = self._time_column()
+        self._refuse_sources_in_turn()
         for name in self.axes:
             self._fill(name, str(time.get('column', '')))
         if not time:
@@ -584,7 +623,7 @@ class _Guesser:
             if not columns[column]:
                 self.unclear_times.add(one.column)
         own = [column for column, is_own in columns.items() if is_own or NO_NAME.fullmatch(column)]
-        is_idle = bool(set(own) - set(self.groups.values()))
+        is_idle = bool(set(own) - set(self.groups.values())) and not are_pairs(held, own)
         self.idle_times = own if is_idle or (behind and len(own) > 1) else []
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
@@ -942,7 +981,13 @@ class _Guesser:
             for each in (*MOTION, *SIGNED)
             if each in self.used[name]
         }
-        magnitude = are_amounts(kind, data, makes_load='load' not in self.used[name])
+        columns = (self.used[name][each]['column'] for each in {*MOTION, kind} & set(data))
+        magnitude = are_amounts(
+            kind,
+            data,
+            makes_load='load' not in self.used[name],
+            own_time=len({*map(self.groups.get, columns)}) > 1,
+        )
         program = self.head.program
         if magnitude is None and kind in MOTOR and program and program.are_amounts:
             magnitude = True

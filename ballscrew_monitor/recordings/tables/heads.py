@@ -74,7 +74,9 @@ FACTOR = re.compile(
 TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
 """A factor that a sentence states."""
 COUNTED = re.compile(
-    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end', re.I
+    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end|'
+    r'length|size|länge|tara',
+    re.I,
 )
 """Labels of rows of numbers that do not scale the cells."""
 MOSTLY = 0.8
@@ -407,7 +409,7 @@ class _Above:
         for _, row in self.wide:
             kind = property_of(row[0])
             if kind in ('name', 'symbol', 'unit') or (
-                kind == 'period' and sum(_kind(cell) == 'n' for cell in row) > 1
+                kind in ('period', 'rate') and sum(_kind(cell) == 'n' for cell in row) > 1
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
@@ -609,13 +611,18 @@ class _Above:
         return [''] * self.width
 
     def _periods(self, names: Sequence[str]) -> dict[str, float]:
-        if 'period' not in self.rows:
-            return {}
-        label = self.rows['period'][0]
-        stated = BRACKETS.findall(label)
-        unit = stated[0] if stated else unit_of_period(label)
-        periods = [period_of(cell, unit) for cell in self._row('period')]
-        return {name: one for name, one in zip(names, periods) if math.isfinite(one)}
+        """Return the periods [s] that rows of them or of rates state; NaN where two differ."""
+        found: dict[str, float] = {}
+        for kind in ('period', 'rate'):
+            label = self.rows[kind][0] if kind in self.rows else ''
+            stated = BRACKETS.findall(label)
+            usual = unit_of_period(label) if kind == 'period' else 'Hz'
+            periods = [period_of(cell, stated[0] if stated else usual) for cell in self._row(kind)]
+            for name, period in zip(names, periods, strict=False):
+                if math.isfinite(period):
+                    same = math.isclose(found.get(name, period), period)
+                    found[name] = period if same else math.nan
+        return found
 
     def _properties(self) -> dict[str, Property]:
         found: dict[str, Property] = {}

@@ -79,6 +79,11 @@ JOINED = re.compile(
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
+OF_CONTROL = re.compile(
+    r'(?:^|(?<=[\s.]))(?:[SP]-\d-\d{4}(?:\.\d+)*|[rp]\d{2,5}(?:\[\d+\])?|0x[\da-fA-F]{4}(?::\d+)?)'
+    r'(?:[\s,:]+|$)|\bStatus\w*\.(?=\w)|\s*-\s*(?:default|slow|fast) sample rate'
+)
+"""Numbers of parameters, structures and groups of channels beside the words of a name."""
 JOINED_WORDS = {
     'act': 'act position',
     'actm': 'act position',
@@ -134,14 +139,13 @@ class Named:
 
 def read_name(column: str, text: str = '') -> Named:
     """Return what the name of a column says, or a longer text about it."""
+    held, column = column, OF_CONTROL.sub('', column)
     told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, text or column))
     words = words_of(told)
     place, axis = _place(words)
     kind, rank = _kind(words), _rank(words)
     if _is_part_of_the_rated_torque(column, words):
-        return Named(
-            column=column, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1
-        )
+        return Named(column=held, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1)
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
@@ -162,6 +166,9 @@ def read_name(column: str, text: str = '') -> Named:
         if kind == 'torque' and not unit and BRACKETS.search(column):
             unit = unit_of(column, other)
             kind = other if unit else kind
+    if kind == 'load' and not unit and KINDS['torque'] & set(words):
+        unit = unit_of(column, 'torque')
+        kind = 'torque' if unit else kind
     in_brackets = words_of(' '.join(BRACKETS.findall(column)))
     of_amounts = AMOUNTS if kind == 'position' else AMOUNTS | WITHOUT_SIGN
     if kind in WITH_SIGN and (of_amounts & {*words, *in_brackets} or BARS.search(column)):
@@ -170,7 +177,7 @@ def read_name(column: str, text: str = '') -> Named:
     if factor_of(column, kind) or (unknown_unit(column) and not unit):
         kind, doubtful = '', kind
     return Named(
-        column=column,
+        column=held,
         place=place,
         axis=axis,
         kind=kind,
@@ -272,7 +279,7 @@ def _rank(words: Sequence[str]) -> int:
 
 def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
-    words = words_without_unit(named.column, named.kind)
+    words = words_without_unit(OF_CONTROL.sub('', named.column), named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
     numbered = ENCODERS & set(words)
     return '_'.join(
