@@ -267,9 +267,11 @@ class _Guesser:
 
     def _refuse_sources_in_turn(self) -> None:
         """Raise InputError for rows of several sources that a column of any name tells apart."""
-        used = {*self.table.readings, *self.mark_cells}
-        others = [name for name in self.source.names() if name not in used]
-        if others and self.clock is not None:
+        if self.clock is None:
+            return
+        used = {one.column for chosen in self.axes.values() for one in chosen.values()}
+        used |= {self.clock[0], *self.mark_cells}
+        if others := [name for name in self.source.names() if name not in used]:
             blocks = self.source.blocks(others)
             column, cells = column_of_sources(blocks, others, self.clock[1])
             if column:

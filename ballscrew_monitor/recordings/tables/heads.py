@@ -75,7 +75,7 @@ TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
 """A factor that a sentence states."""
 COUNTED = re.compile(
     r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end|'
-    r'length|size|länge|tara',
+    r'length|size|länge|tara|^t0$',
     re.I,
 )
 """Labels of rows of numbers that do not scale the cells."""
@@ -310,6 +310,11 @@ class _Block:
         return len(rows) * alone * numbers / cells if cells else 0.0
 
 
+def _is_amount(cell: str) -> bool:
+    """Return True for a number, or a period or rate with its unit."""
+    return _kind(cell) == 'n' or math.isfinite(period_of(cell))
+
+
 def _number(cell: str) -> float:
     try:
         return float(cell.replace(',', '.'))
@@ -409,7 +414,7 @@ class _Above:
         for _, row in self.wide:
             kind = property_of(row[0])
             if kind in ('name', 'symbol', 'unit') or (
-                kind in ('period', 'rate') and sum(_kind(cell) == 'n' for cell in row) > 1
+                kind in ('period', 'rate') and sum(map(_is_amount, row)) > 1
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
@@ -474,15 +479,13 @@ class _Above:
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
             key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')
-            match = FACTOR.search(key.lower())
+            match = None if property_of(label) else FACTOR.search(key.lower())
             numbers = [value.split()[0]] if sign and value.split() else cells
             numbers = [
                 one for one in numbers if NUMBER.fullmatch(one) and any(map(str.isdigit, one))
             ]
-            plain = re.compile(
-                '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
-            )
-            if match and not all(plain.fullmatch(one.strip()) for one in numbers):
+            usual = 1.0 if match and match[1] != 'offset' else 0.0
+            if match and any(_number(one) != usual for one in numbers):
                 return ' '.join(filter(None, row))
             if TIMES.search(label):
                 return label

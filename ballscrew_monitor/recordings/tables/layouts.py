@@ -22,7 +22,7 @@ PROPERTIES: dict[str, frozenset[str]] = {
     'period': frozenset(
         'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
         'sampling samplingcycle deltax dx dt deltat ts cycletimems timestep timeincrement '
-        'xincrement hresolution recordinterval recordinginterval loginterval '
+        'xincrement wfincrement hresolution recordinterval recordinginterval loginterval '
         'logginginterval traceinterval '
         'acquisitioninterval abtastzeit abtastintervall abtastperiode abtastung messtakt '
         'messintervall aufzeichnungsintervall'.split()
@@ -75,7 +75,7 @@ OTHER_ROWS = re.compile(
 )
 """What in a line of its own makes rows other than the samples of which a period is stated."""
 LONGEST_PERIOD = 1.0  # [s], above which a stated period is rather that of a cycle or of the log
-IN_SECONDS = frozenset('deltax dx dt deltat xincrement hresolution'.split())
+IN_SECONDS = frozenset('deltax dx dt deltat xincrement wfincrement hresolution'.split())
 """Labels of a period that need no unit."""
 THOUSANDS = re.compile(r'[1-9]\d{0,2}[.,]\d{3}')
 STATED = re.compile(r'([\d.,]+(?:e[-+]?\d+)?)\s*[\[(]?\s*([^\s\d\[\]()]*)[\])]?', re.I)

@@ -29,16 +29,17 @@ SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
     'speed': frozenset(
         'velocity velo vel speed rpm omega feed frt '
-        'geschwindigkeit geschw vorschub drehzahl'.split()
+        'geschwindigkeit geschw vorschub drehzahl vitesse velocità velocidad'.split()
     ),
-    'position': frozenset('position pos posf lage weg stellung'.split()),
-    'load': frozenset('force load thrust kraft'.split()),
-    'torque': frozenset('torque trq tcmd effort moment drehmoment'.split()),
-    'current': frozenset('current curr cur amps amp iq strom'.split()),
-    'temperature': frozenset('temperature temp temperatur'.split()),
+    'position': frozenset('position pos posf lage weg stellung posizione posición'.split()),
+    'load': frozenset('force frc load thrust kraft forza fuerza'.split()),
+    'torque': frozenset('torque trq tcmd effort moment drehmoment couple coppia'.split()),
+    'current': frozenset('current curr cur amps amp iq strom courant corrente corriente'.split()),
+    'temperature': frozenset('temperature temp temperatur température temperatura'.split()),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
-        'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd'.split()
+        'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd '
+        'temps horodatage tempo tiempo'.split()
     ),
 }
 # Words that make a column something else, whatever else its name says.
@@ -49,17 +50,21 @@ OTHERS = frozenset(
     'lag delta increment correction compensation offset remaining go loss noise tolerance '
     'deadband resultant ripple residual window '
     'program sequence number line block inertia bus count index status limit percent pct '
-    'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
+    'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer '
+    'accélération erreur écart tension puissance accelerazione errore scarto potenza '
+    'aceleración desviación potencia límite limite'.split()
 ).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
 MEASURED = frozenset(
-    'actual act feedback fb measured meas encoder enc real pv ist istwert'.split()
+    'actual act feedback fb measured meas encoder enc real pv ist istwert '
+    'réelle réel mesurée mesuré reale misurata misurato medida medido'.split()
 )
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
-    'soll sollwert programmed prog planned interpolator'.split()
+    'soll sollwert programmed prog planned interpolator '
+    'consigne commande commandée référence comando riferimento consigna referencia'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
@@ -81,7 +86,8 @@ JOINED = re.compile(
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
 OF_CONTROL = re.compile(
     r'(?:^|(?<=[\s.]))(?:[SP]-\d-\d{4}(?:\.\d+)*|[rp]\d{2,5}(?:\[\d+\])?|0x[\da-fA-F]{4}(?::\d+)?)'
-    r'(?:[\s,:]+|$)|\bStatus\w*\.(?=\w)|\s*-\s*(?:default|slow|fast) sample rate'
+    r'(?:[\s,:]+|$)|\s*\(0x[\da-fA-F]{4}(?::\d+)?\)|\bStatus\w*\.(?=\w)|'
+    r'\s*-\s*(?:default|slow|fast) sample rate'
 )
 """Numbers of parameters, structures and groups of channels beside the words of a name."""
 JOINED_WORDS = {
@@ -196,7 +202,7 @@ def _is_of_a_diagram(told: str, words: Sequence[str]) -> bool:
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
     """Return True if a name is that of a load in per cent: controls mean the torque by it."""
-    of_unit = any(text.strip() == RATED for text in BRACKETS.findall(column))
+    of_unit = any(text.strip().lower() in {RATED, *PERCENT} for text in BRACKETS.findall(column))
     others = OTHERS & set(words)
     return 'load' in words and others <= PERCENT and (of_unit or bool(others))
 
