@@ -182,6 +182,7 @@ class _Guesser:
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
         self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
+        self.unitless: dict[str, dict[str, str]] = {}  # units in which a motion agrees, by axis
         self.unclear_times: set[str] = set()
         self.mark_cells: dict[str, list[str]] = {}
         self.idle_times: list[str] = []  # where one of several has no column behind it
@@ -778,7 +779,9 @@ class _Guesser:
         )
 
     def _unit(self, name: str, kind: str) -> str:
-        """Return the unit of an input as the map says or assumes it."""
+        """Return the unit of an input as the map says or assumes it, or as it would agree."""
+        if unit := self.unitless.get(name, {}).get(kind):
+            return unit
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
         return str(self.used[name][kind].get('unit', assumed) or '')
 
@@ -947,6 +950,9 @@ class _Guesser:
         values = self.extremes[place['column']]
         if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
             why = 'positions of joints are in rad or m, and none is so large in m'
+        elif kind == 'position' and name in self.unitless:
+            place['unit'] = None  # which is asked for with that of the speed
+            return
         elif kind == 'position':
             unit, why = self._unit_of_position(name, place['column'])
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
@@ -1038,9 +1044,15 @@ class _Guesser:
         factor = self.ways[name] * conversions.POSITION_UNITS[unit]
         if math.isnan(factor):
             return estimates.largest_speed_unit(largest)
-        if fitting := estimates.unit_by_factor(factor, SPEED_UNITS[of_screw]):
-            also = '' if position.unit else ', as it would if both were in inches'
-            return fitting, f'it agrees with the position over time{also}'
+        fitting = estimates.unit_by_factor(factor, SPEED_UNITS[of_screw])
+        if fitting and (position.unit or self._is_metric()):
+            return fitting, 'it agrees with the position over time'
+        if fitting:
+            self.unitless[name] = {'position': unit, 'speed': fitting}
+            return '', (
+                f'neither {column} nor {position.column} states one; they agree in {fitting} and '
+                f'{unit}, and so they do in inches or turns: state that of the position, too'
+            )
         leads = _leads(factor, of_screw=of_screw)
         told = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
         may = f', as it would in {" or ".join(leads)}' if leads else ''
@@ -1049,7 +1061,7 @@ class _Guesser:
     def _unit_of_position(self, name: str, column: str) -> tuple[str, str]:
         """Return the unit of a position and why, or no unit and why the map must state it."""
         speed, way = self.axes[name].get('speed'), self.ways[name]
-        if speed is None and not (self.head.program and self.head.program.metric):
+        if speed is None and not self._is_metric():
             return '', f'{column} states none that is known, and no speed tells it'
         if speed is None or not speed.unit or math.isnan(way):
             return estimates.position_unit(self.extremes[column])
@@ -1065,6 +1077,10 @@ class _Guesser:
             f'{column} states none that is known, and moves by {way:.3g} in a second for each '
             f'{speed.unit} of {speed.column}'
         )
+
+    def _is_metric(self) -> bool:
+        """Return True if the program that wrote the log has lengths in metres and their parts."""
+        return bool(self.head.program and self.head.program.metric)
 
     def _way_per_speed(self, name: str) -> float:
         """Return how far a position moves in a second for each of its speed, NaN if not alike."""
@@ -1162,6 +1178,8 @@ class _Guesser:
     def _ask_for_gear(self, name: str) -> None:
         """Let the map scale what may be of the motor where the head states a gear."""
         stated, used = self.head.machine.get('gear'), self.used[name]
+        if stated is None:
+            self._assume_no_gear(name)
         if stated is None or stated.value == 1.0:
             return
         for kind in (*MOTION, *MOTOR):
@@ -1175,6 +1193,17 @@ class _Guesser:
                     f'{used[kind]["column"]} that of the screw, 1 if it is: '
                     f'{self._statement("gear")}'
                 )
+
+    def _assume_no_gear(self, name: str) -> None:
+        """Assume of the turning speed of a motor, without a position, that the screw turns so."""
+        speed = self.used[name].get('speed')
+        if speed is None or 'position' in self.used[name] or 'scale' in speed:
+            return
+        if 'motor' in words_of(speed['column']) and (
+            self._unit(name, 'speed') in conversions.ROTARY_SPEED_UNITS
+        ):
+            why = f'{speed["column"]} is of the motor, taken to drive the screw without a gear'
+            self._assume(f'{name}.speed.scale', 1.0, why)
 
     def _lead(self, name: str) -> float:
         """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""
