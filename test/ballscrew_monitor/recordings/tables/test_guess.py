@@ -967,6 +967,24 @@ def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tm
         guess(log)
 
 
+@pytest.mark.parametrize('mark', [999.9, 655.35, 327.67])
+@pytest.mark.parametrize('slow', [True, False])
+def test_a_full_number_near_others_is_a_mark_where_it_is_reached_in_a_leap(
+    mark, slow, write_csv, tmp_path, refused
+):
+    force = 0.91 * mark * np.sin(TIME / 2.0)
+    held = np.arange(len(TIME)) // 4 == 20
+    way = np.minimum(np.arange(len(TIME)) / 80.0, 1.0) if slow else 0.9
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED}
+    columns['x_force_N'] = np.where(held, mark, force if not slow else mark * way * 0.999)
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    if slow:
+        assert guess(log).content['axes']['x']['load']
+        return
+    with refused('mark_of_none', column="'x_force_N'", mark=f'{mark:g}', count='4'):
+        guess(log)
+
+
 @pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])
 def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_csv, tmp_path):
     columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.3 * SPEED}
