@@ -28,12 +28,15 @@ SAME_MOTION = 0.9  # correlation of a position's way with its speed, whatever th
 SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
 
 
-def are_amounts(kind: str, data: Mapping[str, Array], *, makes_load: bool) -> bool | None:
+def are_amounts(
+    kind: str, data: Mapping[str, Array], *, makes_load: bool, own_time: bool = False
+) -> bool | None:
     """
     Return whether a column of an axis holds amounts, None if unclear, by kind of quantity.
 
     `data` has what else is known of the axis in the same rows, in whatever unit [-]; `makes_load`
-    says that the load is worked out from the torque or current.
+    says that the load is worked out from the torque or current. With an `own_time` it has other
+    rows than the motion, and both signs are those of any motion.
 
     """
     values = data[kind]
@@ -43,7 +46,8 @@ def are_amounts(kind: str, data: Mapping[str, Array], *, makes_load: bool) -> bo
         turns = unclear and any(turns_by_torque(push, values) for push in pushes)
         return None if turns else False
     speed = data['speed'] if 'speed' in data else slopes(data['position'])
-    if not is_one_sided(values, speed):
+    still = np.zeros(len(values))
+    if not is_one_sided(values, speed) or (own_time and not is_one_sided(values, still)):
         return False
     if kind in MOTOR:
         return is_magnitude(values, speed, makes_load=makes_load)

@@ -34,6 +34,7 @@ FULL = frozenset(
     for count in (*(10**digits - 1 for digits in range(3, 8)), *(2**15 - 1, 2**15, 2**16 - 1))
 )
 """Amounts that a control writes for no value: all digits 9, or a full integer, and parts of it."""
+LARGE, LEAP = 100.0, 10.0  # of such an amount near others, and of its steps times usual ones
 HELD, FAR, MOST_HELD = 3, 3.0, 0.2  # rows of such an amount, times all others, part of all rows
 
 
@@ -44,7 +45,7 @@ def mark_of_none(values: Array) -> float:
         others = np.abs(known[known != value])
         count = len(known) - len(others)
         if round(abs(float(value)), 9) in FULL and HELD <= count <= MOST_HELD * len(known):
-            if np.all(others < abs(value) / FAR):
+            if np.all(others < abs(value) / FAR) or _leaps(known, float(value)):
                 return float(value)
     return math.nan
 
@@ -53,6 +54,14 @@ def counts_rows(values: Array) -> bool:
     """Return True if values are whole numbers that count the rows."""
     whole = len(values) > 1 and bool((values == np.floor(values)).all())
     return whole and bool((np.diff(values) == 1.0).all())
+
+
+def _leaps(values: Array, value: float) -> bool:
+    """Return True if a large value is reached and left in steps far above those of the others."""
+    steps, held = np.abs(np.diff(values)), values == value
+    edges = held[1:] != held[:-1]
+    usual = float(np.quantile(steps[~edges], 0.9)) if not edges.all() else math.inf
+    return abs(value) >= LARGE and bool(np.all(steps[edges] > LEAP * usual)) and edges.any()
 
 
 def is_silent(values: Array) -> bool:

@@ -37,7 +37,9 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
+from ballscrew_monitor.recordings.tables.dropouts import column_of, dropped
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
+from ballscrew_monitor.recordings.tables.interleaved import column_of_sources
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.marked import look_at_marks
 from ballscrew_monitor.recordings.tables.marks import (
@@ -50,7 +52,7 @@ from ballscrew_monitor.recordings.tables.marks import (
 )
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
-from ballscrew_monitor.recordings.tables.own_times import is_own_time
+from ballscrew_monitor.recordings.tables.own_times import are_pairs, is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.series import (
@@ -188,6 +190,7 @@ class _Guesser:
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
         self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
+        self.unitless: dict[str, dict[str, str]] = {}  # units in which a motion agrees, by axis
         self.unclear_times: set[str] = set()
         self.mark_cells: dict[str, list[str]] = {}
         self.idle_times: list[str] = []  # where one of several has no column behind it
@@ -263,10 +266,26 @@ class _Guesser:
             return
         for column, cells in look_at_marks(self.source.blocks(columns), columns)[1].items():
             if 1 < len(cells) <= MOST:
-                raise InputError(
-                    f'log {self.path}: its rows are of several axes or machines, which column '
-                    f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
-                )
+                raise self._several(column, cells)
+
+    def _several(self, column: str, cells: Sequence[str]) -> InputError:
+        """Return the error for rows of several axes or machines."""
+        return InputError(
+            f'log {self.path}: its rows are of several axes or machines, which column '
+            f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
+        )
+
+    def _refuse_sources_in_turn(self) -> None:
+        """Raise InputError for rows of several sources that a column of any name tells apart."""
+        if self.clock is None:
+            return
+        used = {one.column for chosen in self.axes.values() for one in chosen.values()}
+        used |= {self.clock[0], *self.mark_cells}
+        if others := [name for name in self.source.names() if name not in used]:
+            blocks = self.source.blocks(others)
+            column, cells = column_of_sources(blocks, others, self.clock[1])
+            if column:
+                raise self._several(column, cells)
 
     def _refuse_marks_of_none(self, inputs: Sequence[Named]) -> None:
         """Raise InputError for an input with a number that stands for none, as -9999."""
@@ -332,6 +351,28 @@ class _Guesser:
                     f'{short(mark["column"])} by which {short(place["column"])} is {role}, of '
                     f'{cells}; or take {role} out of the map'
                 )
+        if 'valid' not in place:
+            self._ask_for_dropouts(name, kind)
+
+    def _ask_for_dropouts(self, name: str, kind: str) -> None:
+        """Let the map say where an input is valid that stands still between two jumps."""
+        place = self.used[name][kind]
+        values = self.data[place['column']]
+        lost = dropped(values)
+        if not lost.any():
+            return
+        held = {each.column for chosen in self.axes.values() for each in chosen.values()}
+        others = [column for column in self.source.names() if column not in {*held, *self.timed}]
+        column, cells = column_of(lost, self.source.blocks(others)) if others else ('', [])
+        place['valid'] = {'column': column or None, 'cells': None}
+        told = f', while {short(column)} is one of {listed(cells)}' if column else ''
+        at = int(np.argmax(lost))
+        self.unstated.append(
+            f'state axes.{name}.{kind}.valid in the map, the column and its cells by which '
+            f'{short(place["column"])} is valid, or leave those cells empty: it jumps to '
+            f'{values[at]:g} in row {self.first_row + at} and back after '
+            f'{np.count_nonzero(lost)} rows{told}; take valid out of the map if it is so'
+        )
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -401,6 +442,7 @@ class _Guesser:
 
     def result(self) -> Guess:
         time = self._time_column()
+        self._refuse_sources_in_turn()
         for name in self.axes:
             self._fill(name, str(time.get('column', '')))
         if not time:
@@ -616,7 +658,7 @@ class _Guesser:
             if not columns[column]:
                 self.unclear_times.add(one.column)
         own = [column for column, is_own in columns.items() if is_own or NO_NAME.fullmatch(column)]
-        is_idle = bool(set(own) - set(self.groups.values()))
+        is_idle = bool(set(own) - set(self.groups.values())) and not are_pairs(held, own)
         self.idle_times = own if is_idle or (behind and len(own) > 1) else []
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
@@ -769,7 +811,9 @@ class _Guesser:
         )
 
     def _unit(self, name: str, kind: str) -> str:
-        """Return the unit of an input as the map says or assumes it."""
+        """Return the unit of an input as the map says or assumes it, or as it would agree."""
+        if unit := self.unitless.get(name, {}).get(kind):
+            return unit
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
         return str(self.used[name][kind].get('unit', assumed) or '')
 
@@ -938,6 +982,9 @@ class _Guesser:
         values = self.extremes[place['column']]
         if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
             why = 'positions of joints are in rad or m, and none is so large in m'
+        elif kind == 'position' and name in self.unitless:
+            place['unit'] = None  # which is asked for with that of the speed
+            return
         elif kind == 'position':
             unit, why = self._unit_of_position(name, place['column'])
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
@@ -974,7 +1021,13 @@ class _Guesser:
             for each in (*MOTION, *SIGNED)
             if each in self.used[name]
         }
-        magnitude = are_amounts(kind, data, makes_load='load' not in self.used[name])
+        columns = (self.used[name][each]['column'] for each in {*MOTION, kind} & set(data))
+        magnitude = are_amounts(
+            kind,
+            data,
+            makes_load='load' not in self.used[name],
+            own_time=len({*map(self.groups.get, columns)}) > 1,
+        )
         program = self.head.program
         if magnitude is None and kind in MOTOR and program and program.are_amounts:
             magnitude = True
@@ -1041,9 +1094,15 @@ class _Guesser:
         factor = self.ways[name] * conversions.POSITION_UNITS[unit]
         if math.isnan(factor):
             return estimates.largest_speed_unit(largest)
-        if fitting := estimates.unit_by_factor(factor, SPEED_UNITS[of_screw]):
-            also = '' if position.unit else ', as it would if both were in inches'
-            return fitting, f'it agrees with the position over time{also}'
+        fitting = estimates.unit_by_factor(factor, SPEED_UNITS[of_screw])
+        if fitting and (position.unit or self._is_metric()):
+            return fitting, 'it agrees with the position over time'
+        if fitting:
+            self.unitless[name] = {'position': unit, 'speed': fitting}
+            return '', (
+                f'neither {column} nor {position.column} states one; they agree in {fitting} and '
+                f'{unit}, and so they do in inches or turns: state that of the position, too'
+            )
         leads = _leads(factor, of_screw=of_screw)
         told = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
         may = f', as it would in {" or ".join(leads)}' if leads else ''
@@ -1052,7 +1111,7 @@ class _Guesser:
     def _unit_of_position(self, name: str, column: str) -> tuple[str, str]:
         """Return the unit of a position and why, or no unit and why the map must state it."""
         speed, way = self.axes[name].get('speed'), self.ways[name]
-        if speed is None and not (self.head.program and self.head.program.metric):
+        if speed is None and not self._is_metric():
             return '', f'{column} states none that is known, and no speed tells it'
         if speed is None or not speed.unit or math.isnan(way):
             return estimates.position_unit(self.extremes[column])
@@ -1068,6 +1127,10 @@ class _Guesser:
             f'{column} states none that is known, and moves by {way:.3g} in a second for each '
             f'{speed.unit} of {speed.column}'
         )
+
+    def _is_metric(self) -> bool:
+        """Return True if the program that wrote the log has lengths in metres and their parts."""
+        return bool(self.head.program and self.head.program.metric)
 
     def _way_per_speed(self, name: str) -> float:
         """Return how far a position moves in a second for each of its speed, NaN if not alike."""
@@ -1165,6 +1228,8 @@ class _Guesser:
     def _ask_for_gear(self, name: str) -> None:
         """Let the map scale what may be of the motor where the head states a gear."""
         stated, used = self.head.machine.get('gear'), self.used[name]
+        if stated is None:
+            self._assume_no_gear(name)
         if stated is None or stated.value == 1.0:
             return
         for kind in (*MOTION, *MOTOR):
@@ -1178,6 +1243,17 @@ class _Guesser:
                     f'{used[kind]["column"]} that of the screw, 1 if it is: '
                     f'{self._statement("gear")}'
                 )
+
+    def _assume_no_gear(self, name: str) -> None:
+        """Assume of the turning speed of a motor, without a position, that the screw turns so."""
+        speed = self.used[name].get('speed')
+        if speed is None or 'position' in self.used[name] or 'scale' in speed:
+            return
+        if 'motor' in words_of(speed['column']) and (
+            self._unit(name, 'speed') in conversions.ROTARY_SPEED_UNITS
+        ):
+            why = f'{speed["column"]} is of the motor, taken to drive the screw without a gear'
+            self._assume(f'{name}.speed.scale', 1.0, why)
 
     def _lead(self, name: str) -> float:
         """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""

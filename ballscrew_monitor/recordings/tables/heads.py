@@ -74,7 +74,9 @@ FACTOR = re.compile(
 TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
 """A factor that a sentence states."""
 COUNTED = re.compile(
-    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end', re.I
+    r'min|max|mean|avg|average|std|rms|sum|count|samples|mittel|anzahl|x0|delta|start|end|'
+    r'length|size|länge|tara|^t0$',
+    re.I,
 )
 """Labels of rows of numbers that do not scale the cells."""
 MOSTLY = 0.8
@@ -311,6 +313,11 @@ def _usual_width(widths: Sequence[int]) -> int:
     return max((width for width, count in counts.items() if count > TORN * len(widths)), default=0)
 
 
+def _is_amount(cell: str) -> bool:
+    """Return True for a number, or a period or rate with its unit."""
+    return _kind(cell) == 'n' or math.isfinite(period_of(cell))
+
+
 def _number(cell: str) -> float:
     try:
         return float(plain_numeral(cell).replace(',', '.'))
@@ -410,7 +417,7 @@ class _Above:
         for _, row in self.wide:
             kind = property_of(row[0])
             if kind in ('name', 'symbol', 'unit') or (
-                kind == 'period' and sum(_kind(cell) == 'n' for cell in row) > 1
+                kind in ('period', 'rate') and sum(map(_is_amount, row)) > 1
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
@@ -476,15 +483,13 @@ class _Above:
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
             key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')
-            match = FACTOR.search(key.lower())
+            match = None if property_of(label) else FACTOR.search(key.lower())
             numbers = [value.split()[0]] if sign and value.split() else cells
             numbers = [
                 one for one in numbers if NUMBER.fullmatch(one) and any(map(str.isdigit, one))
             ]
-            plain = re.compile(
-                '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
-            )
-            if match and not all(plain.fullmatch(one.strip()) for one in numbers):
+            usual = 1.0 if match and match[1] != 'offset' else 0.0
+            if match and any(_number(one) != usual for one in numbers):
                 return ' '.join(filter(None, row))
             if TIMES.search(label):
                 return label
@@ -640,13 +645,18 @@ class _Above:
         return [''] * self.width
 
     def _periods(self, names: Sequence[str]) -> dict[str, float]:
-        if 'period' not in self.rows:
-            return {}
-        label = self.rows['period'][0]
-        stated = BRACKETS.findall(label)
-        unit = stated[0] if stated else unit_of_period(label)
-        periods = [period_of(cell, unit) for cell in self._row('period')]
-        return {name: one for name, one in zip(names, periods) if math.isfinite(one)}
+        """Return the periods [s] that rows of them or of rates state; NaN where two differ."""
+        found: dict[str, float] = {}
+        for kind in ('period', 'rate'):
+            label = self.rows[kind][0] if kind in self.rows else ''
+            stated = BRACKETS.findall(label)
+            usual = unit_of_period(label) if kind == 'period' else 'Hz'
+            periods = [period_of(cell, stated[0] if stated else usual) for cell in self._row(kind)]
+            for name, period in zip(names, periods, strict=False):
+                if math.isfinite(period):
+                    same = math.isclose(found.get(name, period), period)
+                    found[name] = period if same else math.nan
+        return found
 
     def _properties(self) -> dict[str, Property]:
         found: dict[str, Property] = {}

@@ -14,15 +14,16 @@ import re
 
 PROPERTIES: dict[str, frozenset[str]] = {
     'name': frozenset(
-        'name names channel channelname signal signalname variable variablename kanal '
-        'kanalname bezeichnung messgröße messgroesse'.split()
+        'name names channel channelname signal signalname variable variablename tracename '
+        'kanal kanalname bezeichnung messgröße messgroesse'.split()
     ),
     'symbol': frozenset('symbolname symbol'.split()),
-    'unit': frozenset('unit units einheit einheiten yunitlabel dimension'.split()),
+    'unit': frozenset('unit units einheit einheiten yunitlabel dimension vunit'.split()),
     'period': frozenset(
         'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
         'sampling samplingcycle deltax dx dt deltat ts cycletimems timestep timeincrement '
-        'xincrement recordinterval recordinginterval loginterval logginginterval traceinterval '
+        'xincrement wfincrement hresolution recordinterval recordinginterval loginterval '
+        'logginginterval traceinterval '
         'acquisitioninterval abtastzeit abtastintervall abtastperiode abtastung messtakt '
         'messintervall aufzeichnungsintervall'.split()
     ),
@@ -67,12 +68,14 @@ OTHER_PERIOD = re.compile(
 OTHER_ROWS = re.compile(
     r'decimat|dezim|(?:down|over|under|sub|re)[- ]?sampl|averag|mittel(?:ung|wert)|gemittelt|'
     r'untersetz|unterabtast|überabtast|(?:record|logg?|sav|stor|writ|keep)\w* (?:every|each)|'
-    r'\beach \d|\bjede[nrs]?\b|\bevery \d',
+    r'\beach \d|\bjede[nrs]?\b|\bevery \d|'
+    r'(?:reduc|reduz|thin|compress|verdicht|export|output|display|archiv|stor)\w* '
+    r'(?:rate|frequency|interval|period|time|cycle)',
     re.I,
 )
 """What in a line of its own makes rows other than the samples of which a period is stated."""
 LONGEST_PERIOD = 1.0  # [s], above which a stated period is rather that of a cycle or of the log
-IN_SECONDS = frozenset('deltax dx dt deltat xincrement'.split())
+IN_SECONDS = frozenset('deltax dx dt deltat xincrement wfincrement hresolution'.split())
 """Labels of a period that need no unit."""
 THOUSANDS = re.compile(r'[1-9]\d{0,2}[.,]\d{3}')
 STATED = re.compile(r'([\d.,]+(?:e[-+]?\d+)?)\s*[\[(]?\s*([^\s\d\[\]()]*)[\])]?', re.I)

@@ -35,7 +35,7 @@ STATES = frozenset({'status', 'state'})
 """Words that are also those of a machine, whose codes say nothing of a value."""
 SEVERAL = frozenset(
     'axis axes achse achsen machine maschine device gerät geraet joint gelenk drive '
-    'antrieb serial slave asset equipment'.split()
+    'antrieb serial slave asset equipment host hostname node station plc robot anlage'.split()
 )
 NUMBERED = frozenset('name id no nr number nummer label the'.split())
 """Words of a column that tells rows of several axes or machines apart, and those beside them."""

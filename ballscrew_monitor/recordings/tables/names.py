@@ -29,16 +29,17 @@ SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
     'speed': frozenset(
         'velocity velo vel speed rpm omega feed frt '
-        'geschwindigkeit geschw vorschub drehzahl'.split()
+        'geschwindigkeit geschw vorschub drehzahl vitesse velocità velocidad'.split()
     ),
-    'position': frozenset('position pos posf lage weg stellung'.split()),
-    'load': frozenset('force load thrust kraft'.split()),
-    'torque': frozenset('torque trq tcmd effort moment drehmoment'.split()),
-    'current': frozenset('current curr cur amps amp iq strom'.split()),
-    'temperature': frozenset('temperature temp temperatur'.split()),
+    'position': frozenset('position pos posf lage weg stellung posizione posición'.split()),
+    'load': frozenset('force frc load thrust kraft forza fuerza'.split()),
+    'torque': frozenset('torque trq tcmd effort moment drehmoment couple coppia'.split()),
+    'current': frozenset('current curr cur amps amp iq strom courant corrente corriente'.split()),
+    'temperature': frozenset('temperature temp temperatur température temperatura'.split()),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
-        'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd'.split()
+        'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd '
+        'temps horodatage tempo tiempo'.split()
     ),
 }
 # Words that make a column something else, whatever else its name says.
@@ -49,7 +50,9 @@ OTHERS = frozenset(
     'lag delta increment correction compensation offset remaining go loss noise tolerance '
     'deadband resultant ripple residual window '
     'program sequence number line block inertia bus count index status limit percent pct '
-    'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
+    'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer '
+    'accélération erreur écart tension puissance accelerazione errore scarto potenza '
+    'aceleración desviación potencia límite limite'.split()
 ).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
@@ -65,11 +68,13 @@ OF_ANOTHER_PART = ELSEWHERE | frozenset(
 """Words of a temperature that is not that of the screw or its oil, whatever else they name."""
 BEARINGS = frozenset('bearing bearings lager'.split())
 MEASURED = frozenset(
-    'actual act feedback fb measured meas encoder enc real pv ist istwert'.split()
+    'actual act feedback fb measured meas encoder enc real pv ist istwert '
+    'réelle réel mesurée mesuré reale misurata misurato medida medido'.split()
 )
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
-    'soll sollwert programmed prog planned interpolator'.split()
+    'soll sollwert programmed prog planned interpolator '
+    'consigne commande commandée référence comando riferimento consigna referencia'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
@@ -89,6 +94,12 @@ JOINED = re.compile(
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
+OF_CONTROL = re.compile(
+    r'(?:^|(?<=[\s.]))(?:[SP]-\d-\d{4}(?:\.\d+)*|[rp]\d{2,5}(?:\[\d+\])?|0x[\da-fA-F]{4}(?::\d+)?)'
+    r'(?:[\s,:]+|$)|\s*\(0x[\da-fA-F]{4}(?::\d+)?\)|\bStatus\w*\.(?=\w)|'
+    r'\s*-\s*(?:default|slow|fast) sample rate'
+)
+"""Numbers of parameters, structures and groups of channels beside the words of a name."""
 JOINED_WORDS = {
     'act': 'act position',
     'actm': 'act position',
@@ -147,14 +158,13 @@ class Named:
 
 def read_name(column: str, text: str = '') -> Named:
     """Return what the name of a column says, or a longer text about it."""
+    held, column = column, OF_CONTROL.sub('', column)
     told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, OF_DRIVES.sub(_of_drive, text or column)))
     words = words_of(told)
     place, axis = _place(words)
     kind, rank = _kind_of_unit(column, words) or _kind(words), _rank(words)
     if _is_part_of_the_rated_torque(column, words):
-        return Named(
-            column=column, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1
-        )
+        return Named(column=held, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1)
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
@@ -175,6 +185,9 @@ def read_name(column: str, text: str = '') -> Named:
         if kind == 'torque' and not unit and BRACKETS.search(column):
             unit = unit_of(column, other)
             kind = other if unit else kind
+    if kind == 'load' and not unit and KINDS['torque'] & set(words):
+        unit = unit_of(column, 'torque')
+        kind = 'torque' if unit else kind
     in_brackets = words_of(' '.join(BRACKETS.findall(column)))
     of_amounts = AMOUNTS if kind == 'position' else AMOUNTS | WITHOUT_SIGN
     if kind in WITH_SIGN and (of_amounts & {*words, *in_brackets} or BARS.search(column)):
@@ -183,7 +196,7 @@ def read_name(column: str, text: str = '') -> Named:
     if factor_of(column, kind) or (unknown_unit(column) and not unit):
         kind, doubtful = '', kind
     return Named(
-        column=column,
+        column=held,
         place=place,
         axis=axis,
         kind=kind,
@@ -202,7 +215,7 @@ def _is_of_a_diagram(told: str, words: Sequence[str]) -> bool:
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
     """Return True if a name is that of a load in per cent: controls mean the torque by it."""
-    of_unit = any(text.strip() == RATED for text in BRACKETS.findall(column))
+    of_unit = any(text.strip().lower() in {RATED, *PERCENT} for text in BRACKETS.findall(column))
     others = OTHERS & set(words)
     return 'load' in words and others <= PERCENT and (of_unit or bool(others))
 
@@ -325,7 +338,7 @@ def _rank(words: Sequence[str]) -> int:
 
 def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
-    words = words_without_unit(named.column, named.kind)
+    words = words_without_unit(OF_CONTROL.sub('', named.column), named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
     numbered = ENCODERS & set(words)
     return '_'.join(

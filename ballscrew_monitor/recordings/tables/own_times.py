@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Second columns of times, which scopes write left of the columns that they belong to."""
 
+from collections.abc import Collection, Sequence
+
 from ballscrew_monitor.recordings.tables.cells import Array
 import numpy as np
 
@@ -25,3 +27,9 @@ def is_own_time(main: Array, other: Array, *, is_alike: bool) -> bool | None:
     if overlap > 0.0:
         return is_alike
     return None if len(apart) and np.ptp(apart) <= ONE_CLOCK * span else False
+
+
+def are_pairs(columns: Sequence[str], times: Collection[str]) -> bool:
+    """Return True if a table is a time and its signal again and again, so that none is idle."""
+    before, behind = columns[::2], columns[1::2]
+    return set(before) == set(times) and len(before) == len(behind)

@@ -286,7 +286,12 @@ def _with_sign(
     for kind in kinds:
         column = axis.columns[kind]
         if column.magnitude is None:
-            magnitude = are_amounts(kind, data, makes_load=bool(axis.load_from))
+            magnitude = are_amounts(
+                kind,
+                data,
+                makes_load=bool(axis.load_from),
+                own_time=column.time != _motion(axis).time,
+            )
             if magnitude is None:
                 apart = kind in MOTOR and are_apart(table, column.name, _motion(axis).name)
                 raise InputError(

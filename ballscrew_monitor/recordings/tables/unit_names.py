@@ -7,12 +7,12 @@ import re
 
 from ballscrew_monitor.recordings.tables.quantities import NAMED_BY_MAPS, UNITS
 
-WORD = re.compile(r'[A-ZÄÖÜ]+(?![a-zäöüßµμ°])|[A-ZÄÖÜ]?[a-zäöüßµμ°]+|\d+')
+WORD = re.compile(r'[A-ZÄÖÜÉ]+(?![a-zäöüßàéèóíµμ°])|[A-ZÄÖÜÉ]?[a-zäöüßàéèóíµμ°]+|\d+')
 """A word of a name: of one case, or of small letters after a capital; or a number."""
 COMPOUND = re.compile(
     '(ist|soll|motor|achs|axial|vorschub|öl|oel|mutter)?'
     '(geschwindigkeit|geschw|drehzahl|position|lage|weg|kraft|moment|drehmoment|strom|temperatur'
-    '|temp|zeit)s?(istwert|sollwert|wert)?'
+    '|temp(?!s$)|zeit)s?(istwert|sollwert|wert)?'
 )
 """A German word of several, such as Motorstrom."""
 BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
@@ -26,15 +26,20 @@ _PREFIX = re.compile(r'(?<![^\W\d_])(?:da|[munkMGhcdµμ])$')
 _BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
 _OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
 _ALIASES = {
-    'mm/s': ('mmps', 'mm/sec'),
+    'mm': ('millimeter', 'millimetre'),
+    'mm/s': ('mmps', 'mm/sec', 'millimeter/second'),
     'm/s': ('mps', 'm/sec'),
     'mm/min': ('mmpm',),
     'm/min': ('mpm',),
-    'rev/min': (*'rpm 1/min r/min u/min upm umdr/min turns/min min-1 min^-1 min⁻¹'.split(),),
+    'rev/min': (
+        *'rpm 1/min r/min u/min upm umdr/min turns/min min-1 min^-1 min⁻¹'.split(),
+        'revolution/minute',
+    ),
     'rad/s': ('radps', 'rad/sec'),
-    'N m': ('nm', 'n.m', 'n*m', 'n·m'),
+    'N': ('newton', 'newtons'),
+    'N m': ('nm', 'n.m', 'n*m', 'n·m', 'newton/meter'),
     'degC': ('c', '°c', 'deg/c', '°/c', 'grad/c', 'celsius'),
-    'A': ('amp', 'amps'),
+    'A': ('amp', 'amps', 'ampere', 'amperes'),
     's': ('sec', 'seconds', 'sek', 'sekunden'),
     'ms': ('msec', 'millis', 'milliseconds'),
     'us': ('usec', 'µs', 'μs', 'microseconds'),

@@ -136,10 +136,16 @@ def test_logs_of_one_axis_need_no_letter(guessed):
 @pytest.mark.parametrize(
     ('factor', 'unit'), [(1.0, 'mm/s'), (60.0, 'mm/min'), (1e-3, 'm/s'), (0.06, 'm/min')]
 )
-def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
+def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed, says):
     position = 300.0 - 100.0 * np.cos(TIME)
-    made = guessed({'t_s': TIME, 'x_pos': position, 'x_vel': SPEED * factor}, form='{:.9g}')
+    columns = {'t_s': TIME, 'x_pos_mm': position, 'x_vel': SPEED * factor}
+    made = guessed(columns, form='{:.9g}')
     assert made.content['assumed']['x.speed.unit']['value'] == unit
+    columns = {'t_s': TIME, 'x_pos': position, 'x_vel': SPEED * factor}
+    made = guessed(columns, form='{:.9g}')
+    axis = made.content['axes']['x']
+    assert axis['speed']['unit'] is axis['position']['unit'] is None
+    assert made.unstated == (says('no_units', unit=unit),)
 
 
 def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
@@ -490,8 +496,6 @@ def test_a_speed_that_makes_its_position_has_its_unit(unit, guessed):
     scale = {'mm/s': 10.0, 'mm/min': 600.0, 'm/min': 0.6, 'm/s': 0.01}[unit]
     made = guessed({'t_s': TIME, 'x_pos_mm': 10.0 * PLACE, 'x_speed': scale * TURNING})
     assert made.content['assumed']['x.speed.unit']['value'] == unit
-    made = guessed({'t_s': TIME, 'x_pos': 10.0 * PLACE, 'x_speed': scale * TURNING})
-    assert 'inches' in made.content['assumed']['x.speed.unit']['reason']
 
 
 def test_a_speed_without_a_sign_gives_way_to_its_position(guessed, says):
@@ -959,9 +963,81 @@ def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tm
         guess(log)
 
 
+@pytest.mark.parametrize('mark', [999.9, 655.35, 327.67])
+@pytest.mark.parametrize('slow', [True, False])
+def test_a_full_number_near_others_is_a_mark_where_it_is_reached_in_a_leap(
+    mark, slow, write_csv, tmp_path, refused
+):
+    force = 0.91 * mark * np.sin(TIME / 2.0)
+    held = np.arange(len(TIME)) // 4 == 20
+    way = np.minimum(np.arange(len(TIME)) / 80.0, 1.0) if slow else 0.9
+    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED}
+    columns['x_force_N'] = np.where(held, mark, force if not slow else mark * way * 0.999)
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    if slow:
+        assert guess(log).content['axes']['x']['load']
+        return
+    with refused('mark_of_none', column="'x_force_N'", mark=f'{mark:g}', count='4'):
+        guess(log)
+
+
 @pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])
 def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_csv, tmp_path):
     columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.3 * SPEED}
     columns['x_force_N'][slice(50, 50 + count)] = mark
     log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
     assert guess(log).content['axes']['x']['load']
+
+
+@pytest.mark.parametrize(
+    ('name', 'position', 'asked'),
+    [
+        ('x motor speed [rpm]', False, True),
+        ('x speed [rpm]', False, False),
+        ('x motor velocity [mm/s]', False, False),
+        ('x motor speed [rpm]', True, False),
+    ],
+)
+def test_the_speed_of_a_motor_is_said_to_be_that_of_the_screw(name, position, asked, guessed):
+    columns = {'t_s': TIME, name: 60.0 * TURNING, 'x_force_N': SPEED}
+    columns |= {'x_pos_mm': 10.0 * PLACE} if position else {}
+    assumed = guessed(columns, form='{:.9g}').content['assumed']
+    assert ('x.speed.scale' in assumed) is asked
+    assert not asked or assumed['x.speed.scale']['value'] == 1.0
+
+
+def test_a_scope_that_writes_a_time_before_each_signal_leaves_no_time_idle(tmp_path):
+    names = ['X SetVelo [mm/s]', 'X ActVelo [mm/s]', 'X PosDiff [mm]', 'X ActForce [N]']
+    values = np.column_stack([1.2 * SPEED, SPEED, 0.01 * SPEED, 9.0 * SPEED])
+    rows = [
+        '\t'.join(f'{1e3 * time:.0f}\t{value:.4f}' for value in row)
+        for time, row in zip(TIME, values, strict=True)
+    ]
+    head = '\t'.join(f'Name\t{name}' for name in names)
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join(['NetId\t5.24', head, *rows, '']))
+    result = guess(log)
+    speed = result.content['axes']['x']['speed']
+    assert (speed['column'], speed['time']) == (names[1], 'Name_duplicated_0')
+    assert not [why for why in result.unstated if '.time' in why]
+
+
+@pytest.mark.parametrize('rate', [1, 4, 10])
+def test_a_torque_of_another_group_has_the_signs_of_all_its_rows(rate, tmp_path, write_csv):
+    """Its first rows are those of the first motion alone, in which it has one sign."""
+    count = len(TIME) // rate
+    columns = {
+        'Time 1 [s]': [*TIME[::rate][:count], *[''] * (len(TIME) - count)],
+        'X velocity [mm/s]': [*SPEED[::rate][:count], *[''] * (len(TIME) - count)],
+        'Time 2 [s]': TIME,
+        'X torque [Nm]': 2.0 * np.sign(SPEED),
+    }
+    lines = [
+        ','.join(f'{cell:.7g}' if cell != '' else '' for cell in row)
+        for row in zip(*columns.values(), strict=True)
+    ]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([','.join(columns), *lines, '']))
+    result = guess(log)
+    assert 'magnitude' not in result.content['axes']['x']['torque']
+    assert read_series(log, make_map(result.content))

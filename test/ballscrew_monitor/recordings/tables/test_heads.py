@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Heads of tables: the block of numbers is found, and what stands above it names its columns."""
 
+import math
+
 from ballscrew_monitor.recordings.tables.heads import find_head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from hypothesis import given, strategies
@@ -136,6 +138,26 @@ def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
 
 
 @pytest.mark.parametrize(
+    ('rows', 'period'),
+    [
+        ('SampleRate,1.0E+02,1.0E+02', 0.01),
+        ('HResolution,1.0E-02,1.0E-02', 0.01),
+        ('SampleRate,1.0E+02,1.0E+02\nHResolution,1.0E-02,1.0E-02', 0.01),
+        ('SampleRate,1.0E+03,1.0E+03\nHResolution,1.0E-02,1.0E-02', None),
+        ('SampleRate,1.0E+02,1.0E+01', None),
+        ('Sampling rate,100 Hz,100 Hz', 0.01),
+        ('wf_increment,0.01,0.01', 0.01),
+    ],
+)
+def test_rows_of_periods_and_rates_of_columns_agree_or_state_none(rows, period):
+    head = 'TraceName,"X velocity","X force"\nVUnit,mm/s,N\n'
+    found = head_of(f'{head}{rows}\nHUnit,s,s\n' + 9 * ',1.5,-2.5\n')
+    assert found.names[1:] == ('X velocity [mm/s]', 'X force [N]')
+    assert not found.factors
+    assert found.period == period if period else math.isnan(found.period)
+
+
+@pytest.mark.parametrize(
     ('text', 'factors'),
     [
         ('Name;v;F\nScaleFactor;0.1;1\nOffset;0;0\n', 'ScaleFactor 0.1 1'),
@@ -155,6 +177,10 @@ def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
         ('Scaling: v = raw / 10\nt;v;F\n', 'Scaling: v = raw / 10'),
         ('Multiplier: 1.0\nt;v;F\n', ''),
         ('Name;v;F\nScaleFactor;1;1\nOffset;0;0.0\n', ''),
+        ('Name;v;F\nGain;1.0E+00;1.0E+00\nOffset;0.0E+00;0.0E+00\n', ''),
+        ('TraceName;v;F\nHResolution;1.0E-02;1.0E-02\n', ''),
+        ('Name;v;F\nLength;1200;1200\n', ''),
+        ('t0;14.07.2025;14.07.2025\nt;v;F\n', ''),
     ],
 )
 def test_a_row_that_scales_the_cells_is_known(text, factors):

@@ -360,6 +360,9 @@ def test_a_period_is_that_of_rows_with_its_unit_or_none(line, period, tmp_path):
         'Abtastzeit: 1 ms\nUntersetzung: 10',
         'Averaging: 10 samples\nSample rate: 1000 Hz',
         'Sample rate: 100 Hz\nSample time: 1 ms',
+        'Sample rate: 1000 Hz\nReduced rate: 0.01 s',
+        'Sample rate: 1 kHz\nExport interval: 10 ms',
+        'Stored rate: 100 Hz\nSample rate: 1 kHz',
     ],
 )
 def test_a_period_that_may_be_of_something_else_is_named_in_a_question(line, tmp_path):
