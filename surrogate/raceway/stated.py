@@ -172,6 +172,11 @@ class Roughness(RoughnessSpectrum):
         return RoughnessSpectrum(**{name: getattr(self, name) for name in names})
 
     @property
+    def likely_rms(self) -> tuple[float | None, float | None]:
+        """Lowest and highest likely Rq [m], None where it was measured."""
+        return self.rms_low, self.rms_high
+
+    @property
     def calibration(self) -> str:
         """Say by what the onset is corrected, empty where the topography alone tells it."""
         if self.calibrated is not None:

@@ -90,7 +90,7 @@ def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
-    found = [law_doubt(rms=sheet.rms, measured=sheet.measured)]
+    found = [law_doubt(rms=sheet.rms, likely_rms=sheet.likely_rms, measured=sheet.measured)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:

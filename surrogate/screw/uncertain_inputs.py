@@ -96,7 +96,7 @@ class Varied:
 
 def _heights(case: ScrewCase) -> Ends:
     """Return the likely Rq of a typical raceway, or that by which traces of one differ."""
-    low, high = case.roughness.rms_low, case.roughness.rms_high
+    low, high = case.roughness.likely_rms
     if low is None or high is None:
         low, high = case.roughness.rms / 1.1, 1.1 * case.roughness.rms
     return low, high
@@ -136,8 +136,9 @@ def _working_loads(case: ScrewCase) -> Ends | None:
 
 
 SENSOR, SAMPLE = 'oil temperature at the nut', 'viscosity of a sample of the oil'
-TRACE, RUN = 'trace of the raceway as it runs', 'torque at slow speeds'
-"""Measurements; the last finds what no gauge tells, boundary film and supply of oil."""
+TRACE, RUN = 'trace of the raceway as it runs', 'film floor by torque at slow speeds'
+"""Measurements; the last finds what no gauge tells, boundary film and supply of oil. A fit of the
+onset itself to such a torque takes the place of all of them, with an interval of its own."""
 INPUTS = (
     Varied('point', 'temperature', '5 K from sensor to contact', SENSOR, plus=5.0),
     Varied('lubricant', 'viscosity', 'width of an ISO 3448 grade', SAMPLE, times=1.1),

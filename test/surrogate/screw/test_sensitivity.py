@@ -156,7 +156,7 @@ def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(re
     assert high > max(max(row['onset_factors']) for row in record['inputs'])
     one, two = record['measure']
     assert (one['measurement'], two['measurement']) == (
-        'torque at slow speeds',
+        'film floor by torque at slow speeds',
         'oil temperature at the nut',
     )
     assert low < one['limit_band'][0] < two['limit_band'][0] < 1
@@ -260,7 +260,7 @@ def test_the_page_has_a_line_per_input_and_keeps_the_bands_apart(record):
     assert f'not known  contact begins at {low:.2g} to {high:.2g} times the stated speed' in page
     low, high = record['numerical_band']
     assert f'numerics   contact begins at {low:.2g} to {high:.2g} times' in page
-    assert 'measure    torque at slow speeds: ' in page
+    assert 'measure    film floor by torque at slow speeds: ' in page
     assert 'then       oil temperature at the nut: ' in page
 
 
