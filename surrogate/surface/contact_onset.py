@@ -177,11 +177,13 @@ def law_doubt(
     heights = [height for height in (rms, *likely_rms) if height]
     if measured or not rms or low <= min(heights) <= max(heights) <= high:
         return ''
-    height = f'is {MICRO * rms:.3g}'
     if low <= rms <= high:
-        height = f'may be {MICRO * min(heights):.3g} to {MICRO * max(heights):.3g}'
+        return (
+            f'the likely Rq, {MICRO * min(heights):.3g} to {MICRO * max(heights):.3g} um, reaches '
+            f'beyond the {MICRO * low:g} to {MICRO * high:g} um that were marched'
+        )
     return (
-        f'Rq {height} um, and raceways of {MICRO * low:g} to {MICRO * high:g} um were '
+        f'Rq is {MICRO * rms:.3g} um, and raceways of {MICRO * low:g} to {MICRO * high:g} um were '
         'marched: beyond them nobody knows how far the law is off'
     )
 
