@@ -73,7 +73,7 @@ class Roughness(RoughnessSpectrum):
         20.0,
         default=3e9,
         means='stands for yield and mild wear of running in together; the least certain '
-        'number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
+        'number of the sheet: 2 and 5 move the onset by 0.7 and 1.4',
     )
     run_in_low: float = quantity(
         'GPa',
