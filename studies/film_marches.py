@@ -19,6 +19,7 @@ from typing import Any, cast
 
 import numpy as np
 from surrogate.asperities.law import FILM_BANDS, FILM_POWER
+from surrogate.asperities.running_in import RunningContact, tile_size
 from surrogate.asperities.strips import raceway_strips, RacewayStrip
 from surrogate.asperities.topography import (
     lay_of,
@@ -39,8 +40,10 @@ from surrogate.parameters import load_lubricant, load_screw, Screw
 from surrogate.raceway.dry_contact import press
 from surrogate.raceway.fractal import Lay
 from surrogate.raceway.stated import State
+from surrogate.raceway.tile import draw_tile
 from surrogate.tasks.table import read_table, write_table
 from surrogate.units import ZERO_CELSIUS
+from topography_onset import cut_alone
 
 RESULTS = Path('studies/results/film_marches.csv')
 COURSES = Path('studies/results/film_courses.csv')
@@ -205,10 +208,13 @@ def strip_of(case: Case) -> RacewayStrip:
     oil = ContactLubricant(
         viscosity=float(state.viscosity), pressure_viscosity=float(state.pressure_viscosity)
     )
-    floor = 1e-9 * case.floor_nm
-    return raceway_strips(
-        sheet_of(case), cast('Side', case.side), oil, floor, draws=[case.draw], waves=case.waves
-    )[0]
+    floor, screw, side = 1e-9 * case.floor_nm, sheet_of(case), cast('Side', case.side)
+    (strip,) = raceway_strips(screw, side, oil, floor, draws=[case.draw], waves=case.waves)
+    running, shortest = RunningContact.of(screw, side), strip.shortest
+    size, shape = tile_size(running, shortest=shortest)
+    tile = draw_tile(running.waves[0], case.draw, size=size, shape=shape, shortest=shortest)
+    pressures = running.working_pressure, running.cutting_pressure
+    return replace(strip, tile=cut_alone(tile, 0.5 * running.reduced_modulus, *pressures))
 
 
 def left_at(strip: RacewayStrip, speed: float) -> tuple[float, float, float, float]:

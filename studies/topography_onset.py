@@ -30,7 +30,7 @@ from surrogate.formulas.load_sharing import normal_force
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import load_lubricant, load_screw, Screw
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
-from surrogate.raceway.dry_contact import run_in
+from surrogate.raceway.dry_contact import press
 from surrogate.raceway.scaling import scale_spectrum, with_shorter_waves
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import ZERO_CELSIUS
@@ -96,6 +96,18 @@ def screw_of(row: dict[str, str]) -> Screw:
     return replace(screw, roughness=roughness)
 
 
+def cut_alone(tile: Tile, modulus: float, pressure: float, hardness: float) -> Tile:
+    """
+    Return a tile, cut where summits carry their hardness [Pa] and risen nowhere.
+
+    Strips of the tables were marched on tiles that were cut so, not as raceways run in.
+
+    """
+    contact = press(tile, modulus, pressure, hardness=hardness, tolerance=1e-3)
+    yields = (contact.pressure >= hardness) & (contact.gap < 0)
+    return replace(tile, heights=tile.heights + np.where(yields, contact.gap, 0.0))
+
+
 def strip_of(row: dict[str, str]) -> Strip:
     """Return the strip of a row of the table."""
     screw, lubricant = screw_of(row), load_lubricant(row['oil'])
@@ -120,7 +132,7 @@ def strip_of(row: dict[str, str]) -> Strip:
     tile = draw_tile(waves, int(row['draw']), size=size, shape=shape, shortest=shortest)
     if row['cut_GPa']:
         modulus, load = 0.5 * strip.reduced_modulus, float(row['cut_load']) * strip.max_pressure
-        tile, _ = run_in(tile, modulus, load, 1e9 * float(row['cut_GPa']))
+        tile = cut_alone(tile, modulus, load, 1e9 * float(row['cut_GPa']))
     state = lubricant_state(lubricant, float(row['temperature_degC']) + ZERO_CELSIUS)
     return Strip(
         name=row['march'],

@@ -17,6 +17,7 @@ from ballscrew_monitor.report.health_part import verdict_box
 from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.page import element, Markup, table, TableCell, TableRow
 from surrogate.surface import onset_of_surface, Surface
+from surrogate.surface.shipped import SHIPPED
 
 NEEDED = {
     'Axial load': 'the axial load, or the motor torque that it can be derived from',
@@ -175,8 +176,12 @@ def _friction(runs: Sequence[FreeRun]) -> Iterator[Markup]:
 def _surfaces(surfaces: Mapping[str, str]) -> Iterator[Markup]:
     for axis, file in surfaces.items():
         surface = Surface.load(file)
-        onset = onset_of_surface(surface).sentence()
-        yield element('p', f'Axis {axis}: {Path(file).name}, tier {surface.tier}. {onset}.')
+        onset = onset_of_surface(surface)
+        text = f'Axis {axis}: {Path(file).name}, tier {surface.tier}. {onset.sentence()}.'
+        is_own = surface.tier == 'full' and Path(file).parent != SHIPPED
+        if is_own and not (onset.marched or onset.calibrated):
+            text += ' Its raceway was not marched: `ballscrew surface build` marches it.'
+        yield element('p', text)
     if not surfaces:
         yield element('p', 'Each recording was judged with the surface that it names.')
 

@@ -3,9 +3,9 @@
 """
 Raceways as they run: traced, after their first pass, and run in.
 
-No raceway carries more than its hardness, at which the first pass under the largest working load
-cuts the summits. Running in goes on with mild wear, for which a lower cutting pressure stands.
-Raceway and ball are each cut alone and then added, as the contact adds them.
+The first pass under the largest working load cuts the summits at the hardness. Running in goes on
+with mild wear, for which a lower cutting pressure stands. Raceway and ball are each cut alone and
+then added, as the contact adds them.
 
 """
 
@@ -118,21 +118,14 @@ def running_tiles(
     Return tiles of a raceway with its ball in their state; none where both are smooth.
 
     One a draw, by default `TILES` or `LONG_TILES`, with waves not shorter than `shortest` [m].
-    Raises InputError where the largest working load presses the contact by more than the cutting
-    pressure.
+    Raises InputError where all waves are longer than half of the contact, or `run_in` does not
+    converge.
 
     """
     fields = contact.waves
     if not fields:
         return []
-    pressure, bound = contact.working_pressure, contact.cutting_pressure
-    if not 0 < pressure < bound:
-        raise InputError(
-            f'raceway: under the largest working load of {contact.working_load:g} N the mean '
-            f'pressure is {GIGA * pressure:.3g} GPa, allowed is above 0 and below that at which '
-            f'summits are cut, {GIGA * bound:.3g} GPa: see working_load_N, run_in_pressure_GPa '
-            'and hardness_GPa'
-        )
+    pressure, hardness = contact.working_pressure, contact.cutting_pressure
     shortest = max(contact.resolved_wave, shortest)
     size, shape = tile_size(contact, shortest=shortest)
     modulus, tiles = 0.5 * contact.reduced_modulus, []
@@ -141,7 +134,7 @@ def running_tiles(
             draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field)
             for field, waves in fields.items()
         )
-        cut = [_cut(tile, modulus, pressure, bound) for tile in drawn]
+        cut = [_cut(tile, modulus, pressure, hardness) for tile in drawn]
         heights = np.sum([tile.heights for tile in cut], axis=0)
         tiles.append(replace(cut[0], heights=heights))
     return tiles
@@ -164,17 +157,17 @@ def _tiles(shape: tuple[int, int]) -> int:
     return TILES if shape[0] < LONG * NODES else LONG_TILES
 
 
-def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
+def _cut(tile: Tile, modulus: float, pressure: float, hardness: float) -> Tile:
     if not tile.heights.any():
         raise InputError(
             'roughness: all its waves are longer than half of the contact, allowed are shorter '
             'ones: a smaller cutoff_short_um'
         )
-    lower, found = run_in(tile, modulus, pressure, bound)
-    if not found.converged:
+    lower, contact = run_in(tile, modulus, pressure, hardness)
+    if not contact.converged:
         raise InputError(
             f'raceway: pressed by {GIGA * pressure:.3g} GPa, where its summits yield at '
-            f'{GIGA * bound:.3g} GPa was not found in {found.iterations} iterations, allowed is a '
-            'smaller working_load_N'
+            f'{GIGA * hardness:.3g} GPa was not found in {contact.iterations} iterations, allowed '
+            'is a smaller working_load_N'
         )
     return lower

@@ -52,6 +52,7 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         oil=lubricant.name,
         viscosity=lubricant.kinematic_viscosity_40,
         rms=screw.roughness.rms,
+        likely_rms=screw.roughness.likely_rms,
         calibrated=screw.roughness.onset_band is not None,
         marched=screw.roughness.marched_film is not None,
         lead=screw.lead,

@@ -193,11 +193,23 @@ def run_in(
     """
     Return a tile after a pass under a mean pressure [Pa], and the contact in that pass.
 
-    What sinks where the pressure is at the hardness [Pa] stays sunk, so that a second pass is
-    elastic. `modulus` as `press` has it, which also says what is raised.
+    Summits persist, for what surrounds them is pressed too: nothing carries more than the hardness
+    [Pa] above the mean pressure, so that summits that all yield have the area p/(p + H) which
+    Pullen, Williamson, Proc. R. Soc. Lond. A 327 (1972) 159, measured on confined specimens. What
+    yields is levelled to the deformed surface, and what is not in contact rises evenly, up to that
+    surface, by the same volume. A second pass is elastic. `modulus` as `press` has it.
 
     """
-    found = press(tile, modulus, mean_pressure, hardness=hardness, tolerance=1e-3)
-    yielded = (found.pressure >= hardness) & (found.gap < 0)
-    heights = np.where(yielded, tile.heights + found.gap, tile.heights)
-    return replace(tile, heights=heights), found
+    bound = hardness + mean_pressure
+    contact = press(tile, modulus, mean_pressure, hardness=bound, tolerance=1e-3)
+    yields, apart = (contact.pressure >= bound) & (contact.gap < 0), contact.pressure <= 0
+    risen = np.minimum(contact.gap, _level(contact.gap[apart], -contact.gap[yields].sum()))
+    moved = np.select([yields, apart], [contact.gap, risen])
+    return replace(tile, heights=tile.heights + moved), contact
+
+
+def _level(gaps: Array, volume: float) -> float:
+    """Return the height [m] up to which a volume fills gaps [m], one a node, the lowest alike."""
+    rising = np.sort(np.append(gaps, 0.0))
+    filled = np.cumsum(rising) + np.arange(gaps.size, -1, -1) * rising
+    return float(np.interp(volume, filled, rising))

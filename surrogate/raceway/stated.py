@@ -73,7 +73,7 @@ class Roughness(RoughnessSpectrum):
         20.0,
         default=3e9,
         means='stands for yield and mild wear of running in together; the least certain '
-        'number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
+        'number of the sheet: 2 and 5 move the onset by 0.7 and 1.4',
     )
     run_in_low: float = quantity(
         'GPa',
@@ -170,6 +170,11 @@ class Roughness(RoughnessSpectrum):
         """Return the profile alone, by which waves are known."""
         names = [spec.name for spec in fields(RoughnessSpectrum)]
         return RoughnessSpectrum(**{name: getattr(self, name) for name in names})
+
+    @property
+    def likely_rms(self) -> tuple[float | None, float | None]:
+        """Lowest and highest likely Rq [m], None where it was measured."""
+        return self.rms_low, self.rms_high
 
     @property
     def calibration(self) -> str:

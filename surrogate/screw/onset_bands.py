@@ -9,6 +9,7 @@ independent, so the logarithms of their factors add up as squares, each side for
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 import math
 from typing import Any
@@ -94,11 +95,13 @@ def bands_of(case: ScrewCase, factors: Measured) -> OnsetBands:
 def onset_factors(case: ScrewCase, inputs: Iterable[Varied]) -> Measured:
     """Return the onsets at both ends of inputs; NaN at an end that the model refuses."""
     stated = case.onset or math.nan
-    return [
-        (varied.measured, [_onset(varied, case, end) / stated for end in ends])
-        for varied in inputs
-        if (ends := varied.bounds(case))
-    ]
+    with ThreadPoolExecutor() as threads:  # each end may be another raceway, a second or two
+        speeds = [
+            (varied.measured, [threads.submit(_onset, varied, case, end) for end in ends])
+            for varied in inputs
+            if (ends := varied.bounds(case))
+        ]
+    return [(name, [speed.result() / stated for speed in both]) for name, both in speeds]
 
 
 def _onset(varied: Varied, case: ScrewCase, value: float) -> float:

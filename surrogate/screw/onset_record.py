@@ -4,7 +4,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-import math
 from typing import Any
 
 from surrogate.files import InputError
@@ -59,7 +58,6 @@ def onset_record(
             'band': list(bands.whole),
             **bands.record(),
         }
-    # The lower the pressure at which summits are cut, the more the load matters.
     raceway = with_raceway(screw, state=[*states][-1])
     loads = [factor * opened.working_load for factor in LOAD_FACTORS]
     return {
@@ -92,7 +90,7 @@ def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
-    found = [law_doubt(rms=sheet.rms, measured=sheet.measured)]
+    found = [law_doubt(rms=sheet.rms, likely_rms=sheet.likely_rms, measured=sheet.measured)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:
@@ -159,13 +157,10 @@ def _narrowed(found: Mapping[str, Any]) -> Iterator[str]:
 def _over_load(record: Mapping[str, Any]) -> str:
     """Say where contact begins in the last state if other loads had cut its summits."""
     loads, speeds = record['other_working_loads_N'], record['other_working_load_speeds_rad_s']
-    low, high = (
-        f'at {digits(speed / RPM)} rev/min if it was {_newtons(load)}'
-        if math.isfinite(speed)
-        else f'at an unknown speed if it was {_newtons(load)}, more than the summits bear'
-        for load, speed in zip(loads, speeds, strict=True)
-    )
-    return f'that load matters: {WORDS[[*record["states"]][-1]]}, contact begins {low}, {high}'
+    low, high = (_newtons(load) for load in loads)
+    faster, slower = (f'{digits(speed / RPM)} rev/min' for speed in speeds)
+    state = WORDS[[*record['states']][-1]]
+    return f'{state} under {low}, contact begins at {faster}, under {high} at {slower}'
 
 
 def _newtons(load: float) -> str:

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactLubricant
-from surrogate.files import InputError
 from surrogate.formulas.geometry import Side
 from surrogate.formulas.inlet import speed_before_inlet, starved_speed
 from surrogate.formulas.line import central_film_line, line_at
@@ -23,8 +22,6 @@ from surrogate.screw.opened import Contacts
 Array = NDArray[np.float64]
 SMOOTH_ONSET = 1e-3
 """Entrainment speed that stands for the onset of smooth raceways [m/s]."""
-ABOVE = 1.1
-"""Least pressure at which summits are cut over that of the contact [-]."""
 
 
 def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
@@ -50,13 +47,6 @@ def with_raceway(screw: Screw, **changes: Any) -> Screw:
     if changes.get('state', screw.roughness.state) != screw.roughness.state:
         changes = {**dict.fromkeys(Roughness.MARCHED), **changes}
     return replace(screw, roughness=replace(screw.roughness, **changes))
-
-
-def run_in_range(screw: Screw) -> tuple[float, float]:
-    """Return the likely range of the pressure of running in [Pa], which the contact must bear."""
-    sheet = screw.roughness
-    low = max(sheet.run_in_low, ABOVE * Contacts.of(screw).working_pressure)
-    return min(low, sheet.run_in_pressure), sheet.run_in_high
 
 
 def run_in_at(screw: Screw, pressure: float) -> Screw:
@@ -139,21 +129,9 @@ def law_band(
 def onset_over_working_load(
     screw: Screw, lubricant: Lubricant, load: float, temperature: float, loads: Sequence[float]
 ) -> list[float]:
-    """
-    Return the onset speeds [rad/s] of a screw whose summits were cut under some loads [N].
-
-    NaN where a load presses the contact by more than the pressure at which summits are cut.
-
-    """
-    found = []
-    for largest in loads:
-        try:
-            pressed = Contacts.of(replace(screw, working_load=largest))
-            point = onset_point(pressed, lubricant, load, temperature)
-        except InputError:
-            point = {'speed_rad_s': math.nan}
-        found.append(point['speed_rad_s'])
-    return found
+    """Return the onset speeds [rad/s] of a screw whose summits were cut under some loads [N]."""
+    cut = [Contacts.of(replace(screw, working_load=largest)) for largest in loads]
+    return [onset_point(opened, lubricant, load, temperature)['speed_rad_s'] for opened in cut]
 
 
 def onset_over_pressure(

@@ -71,7 +71,7 @@ def sensitivity_record(
     case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
     used = [varied for varied in inputs if varied.bounds(case)]
     progress(0, len(used))
-    stated, rows = _outcome(case), []
+    stated, rows, sheet = _outcome(case), [], screw.roughness
     for done, varied in enumerate(used):
         rows.append(_row(varied, case, stated))
         progress(done + 1, len(used))
@@ -87,7 +87,9 @@ def sensitivity_record(
         'inputs': rows,
         'band': list(bands.whole),
         **bands.record(),
-        'law_doubt': law_doubt(rms=screw.roughness.rms, measured=screw.roughness.measured),
+        'law_doubt': law_doubt(
+            rms=sheet.rms, likely_rms=sheet.likely_rms, measured=sheet.measured
+        ),
     }
 
 

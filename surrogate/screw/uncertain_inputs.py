@@ -11,7 +11,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import Roughness
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
+from surrogate.screw.screw_onset import onset_point, run_in_at, with_raceway
 
 Part = Literal['point', 'lubricant', 'screw', 'roughness']
 Ends = tuple[float, float]
@@ -96,7 +96,7 @@ class Varied:
 
 def _heights(case: ScrewCase) -> Ends:
     """Return the likely Rq of a typical raceway, or that by which traces of one differ."""
-    low, high = case.roughness.rms_low, case.roughness.rms_high
+    low, high = case.roughness.likely_rms
     if low is None or high is None:
         low, high = case.roughness.rms / 1.1, 1.1 * case.roughness.rms
     return low, high
@@ -120,27 +120,25 @@ def _runs_in(case: ScrewCase) -> bool:
 
 def _pressures(case: ScrewCase) -> Ends | None:
     """Return the pressures from the lowest of running in up to none of it."""
-    return (run_in_range(case.screw)[0], case.roughness.hardness) if _runs_in(case) else None
+    return (case.roughness.run_in_low, case.roughness.hardness) if _runs_in(case) else None
 
 
 def _hardness(case: ScrewCase) -> Ends | None:
-    """Return hardnesses that bear the contact, None where running in cuts the summits."""
-    if _runs_in(case):
-        return None
+    """Return softer and harder steel, None where running in cuts the summits."""
     hardness = case.roughness.hardness
-    borne = ABOVE * Contacts.of(case.screw).working_pressure
-    return min(max(hardness / 1.15, borne), hardness), 1.15 * hardness
+    return None if _runs_in(case) else (hardness / 1.15, 1.15 * hardness)
 
 
-def _working_loads(case: ScrewCase) -> Ends:
-    """Return half and double of the largest working load, stated or assumed."""
+def _working_loads(case: ScrewCase) -> Ends | None:
+    """Return half and double of the largest working load, None where no summits ran in."""
     load = Contacts.of(case.screw).working_load
-    return 0.5 * load, 2.0 * load
+    return (0.5 * load, 2.0 * load) if _runs_in(case) else None
 
 
 SENSOR, SAMPLE = 'oil temperature at the nut', 'viscosity of a sample of the oil'
-TRACE, RUN = 'trace of the raceway as it runs', 'torque at slow speeds'
-"""Measurements; the last finds what no gauge tells, boundary film and supply of oil."""
+TRACE, RUN = 'trace of the raceway as it runs', 'film floor by torque at slow speeds'
+"""Measurements; the last finds what no gauge tells, boundary film and supply of oil. A fit of the
+onset itself to such a torque takes the place of all of them, with an interval of its own."""
 INPUTS = (
     Varied('point', 'temperature', '5 K from sensor to contact', SENSOR, plus=5.0),
     Varied('lubricant', 'viscosity', 'width of an ISO 3448 grade', SAMPLE, times=1.1),
@@ -151,12 +149,12 @@ INPUTS = (
     Varied('roughness', 'rms_slope', 'traces of a raceway differ by 20 %', TRACE, times=1.2),
     Varied('roughness', 'cutoff_long', 'not stated: rows beside it', TRACE, ends=_cutoffs),
     Varied('roughness', 'run_in_pressure', 'lowest, to not run in', TRACE, ends=_pressures),
+    Varied('screw', 'working_load', 'half and double', TRACE, ends=_working_loads),
     Varied('roughness', 'hardness', '58 to 64 HRC, in no band', ends=_hardness),
     Varied('screw', 'preload', 'setting and wear, in no band', times=1.2),
     Varied(
         'screw', 'conformity_screw', 'grinding, in no band', plus=0.01, also=('conformity_nut',)
     ),
-    Varied('screw', 'working_load', 'half and double, in no band', ends=_working_loads),
     Varied('roughness', 'cutoff_short', 'scatter of tiles, in no band', times=2.0),
 )
 """

@@ -292,7 +292,7 @@ def _draw_loads(axes: Axes, rows: Rows) -> None:
         rcs = curves.curve(points, 'load', column, **wanted)
         axes.plot(rcs.at, rcs.mean / rcs.mean[0], label=label.format(**wanted), **style)
     label = 'RCS over that of the least load [-]'
-    axes.set(ylabel=label, ylim=(0.5, 2.2), xlabel='axial load [N]')
+    axes.set(ylabel=label, ylim=(0.5, 2.4), xlabel='axial load [N]')
     finish(axes, 'd', 'RCS over load', legend='upper left')
 
 

@@ -35,12 +35,7 @@ from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import (
-    onset_over_pressure,
-    onset_point,
-    run_in_range,
-    with_raceway,
-)
+from surrogate.screw.screw_onset import onset_over_pressure, onset_point, with_raceway
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.studies import drag
 from surrogate.studies.curves import Array, markdown_table
@@ -220,7 +215,9 @@ def load_on_film(case: ValidationCase) -> list[float]:
 def run_in_speeds(case: ValidationCase) -> list[float]:
     """Return the onset after running in over that of a new raceway, over its pressures [-]."""
     place = case.lubricant, 0.0, case.temperature
-    speeds = onset_over_pressure(case.new.sheet, *place, run_in_range(case.screw))
+    sheet = case.screw.roughness
+    pressures = sheet.run_in_low, sheet.run_in_high
+    speeds = onset_over_pressure(case.new.sheet, *place, pressures)
     return [speed / case.onset['speed_rad_s'] for speed in speeds]
 
 

@@ -9,7 +9,7 @@ slower: the speed of the onset goes with one over the viscosity and with a power
 
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 import math
 from typing import Any
@@ -70,8 +70,9 @@ class ContactOnset:
     was measured which narrows it most, by name and band, None where nothing does; `fastest`, the
     speed that the screw allows, and up to which a zone is looked for, `reach` [rad/s]. Without a
     zone contact must begin `slower`, a factor [-], as it does at `colder` [K], NaN if at no
-    temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the raceway [m], and
-    whether its onset is `calibrated`, or `marched` on strips of it.
+    temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the raceway [m], its
+    likely ends if not measured, and whether its onset is `calibrated`, or `marched` on strips of
+    it.
 
     """
 
@@ -87,6 +88,7 @@ class ContactOnset:
     colder: float = NAN
     viscosity: float
     rms: float
+    likely_rms: Sequence[float | None] = ()
     calibrated: bool = False
     marched: bool = False
     lead: float
@@ -103,7 +105,9 @@ class ContactOnset:
                 f'{between} at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
             begins = begins[0].upper() + begins[1:]
-            law = law_doubt(rms=self.rms, measured=self.calibrated or self.marched)
+            law = law_doubt(
+                rms=self.rms, likely_rms=self.likely_rms, measured=self.calibrated or self.marched
+            )
             begins += f'; {law}' * bool(law)
         limit = self._speed(self.fastest, as_feed)
         return f"{begins}; this screw's limit is {limit}; {self._zone(as_feed)}"
@@ -159,17 +163,25 @@ class ContactOnset:
         return f'{text}: contact begins slow enough {remedies}'
 
 
-def law_doubt(*, rms: float, measured: bool = False) -> str:
+def law_doubt(
+    *, rms: float, likely_rms: Sequence[float | None] = (), measured: bool = False
+) -> str:
     """
     Say where the law of the onset is beyond the marches; empty where it is not.
 
-    Rq [m] as the sheet has it, 0 if smooth; what was measured or marched on the raceway itself
-    takes the place of other marches.
+    Rq [m] as the sheet has it, 0 if smooth, with its lowest and highest likely value if not
+    measured; what was measured or marched on the raceway itself takes the place of other marches.
 
     """
     low, high = MARCHED_RMS
-    if measured or not rms or low <= rms <= high:
+    heights = [height for height in (rms, *likely_rms) if height]
+    if measured or not rms or low <= min(heights) <= max(heights) <= high:
         return ''
+    if low <= rms <= high:
+        return (
+            f'the likely Rq, {MICRO * min(heights):.3g} to {MICRO * max(heights):.3g} um, reaches '
+            f'beyond the {MICRO * low:g} to {MICRO * high:g} um that were marched'
+        )
     return (
         f'Rq is {MICRO * rms:.3g} um, and raceways of {MICRO * low:g} to {MICRO * high:g} um were '
         'marched: beyond them nobody knows how far the law is off'
@@ -245,6 +257,7 @@ def onset_of_surface(
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
+        likely_rms=[screw['roughness'].get(name) for name in ('rms_low', 'rms_high')],
         calibrated=screw['roughness']['onset_band'] is not None,
         marched=screw['roughness'].get('marched_film') is not None,
         lead=surface.lead,

@@ -4,6 +4,7 @@
 
 import importlib.util
 from pathlib import Path
+import sys
 
 import pytest
 
@@ -12,7 +13,9 @@ STUDIES = Path(__file__).resolve().parents[2] / 'studies'
 
 @pytest.fixture(scope='session')
 def study():
-    """Return the function that loads a study by its name."""
+    """Return the function that loads a study by its name; studies import one another."""
+    if str(STUDIES) not in sys.path:
+        sys.path.append(str(STUDIES))
 
     def load(name):
         spec = importlib.util.spec_from_file_location(name, STUDIES / f'{name}.py')

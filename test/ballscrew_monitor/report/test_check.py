@@ -10,6 +10,7 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.report.check import map_beside, sheets_of
+from ballscrew_monitor.report.check_page import _surfaces
 from ballscrew_monitor.report.free_run import identified
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
@@ -283,3 +284,10 @@ def test_a_single_nut_with_oversize_balls_goes_from_its_catalogue_page_to_a_verd
     assert axis['verdict']
     inputs = read(record['surfaces']['x']).header['inputs']
     assert inputs['screw']['nut'] == 'oversize'
+
+
+def test_the_page_says_of_an_own_surface_that_its_raceway_was_not_marched(tmp_path):
+    shipped = shipped_surface(tier='full')
+    own = shutil.copy(shipped, tmp_path)
+    texts = list(map(str, _surfaces({'x': str(own), 'y': str(shipped)})))
+    assert ['raceway was not marched' in text for text in texts] == [True, False]

@@ -35,7 +35,7 @@ def test_the_shipped_sheet_as_a_page_in_the_range_of_the_oil(run, capsys):
         'new, after its first pass ',
         'cut at 7 GPa',
         'cut at 3 GPa',
-        'a measured torque at slow speeds leaves ',
+        'a measured film floor by torque at slow speeds leaves ',
         'Contact is likely below',
         'raceway (new): Rq 0.12 um',
     ):

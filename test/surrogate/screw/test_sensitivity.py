@@ -156,7 +156,7 @@ def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(re
     assert high > max(max(row['onset_factors']) for row in record['inputs'])
     one, two = record['measure']
     assert (one['measurement'], two['measurement']) == (
-        'torque at slow speeds',
+        'film floor by torque at slow speeds',
         'oil temperature at the nut',
     )
     assert low < one['limit_band'][0] < two['limit_band'][0] < 1
@@ -165,7 +165,7 @@ def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(re
 
 
 def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
-    """From the lowest pressure that bears to none of it; hardness takes its place on a new one."""
+    """From its lowest pressure to none of it; hardness takes its place on a new one."""
     new = ScrewCase(screw=screw, lubricant=oil, point=POINT)
     run_in = replace(new, screw=with_raceway(screw, state='run_in'))
     traced = replace(new, screw=with_raceway(screw, state='run_in', traced='run_in'))
@@ -219,30 +219,36 @@ def test_the_page_says_where_the_law_is_off_by_more_than_its_band(screw, oil, re
     assert f'\n  law        {says("rms_0_04")}\n' in sensitivity_page(fine)
 
 
-def test_half_and_double_of_the_working_load_are_in_no_band(screw, oil):
-    """Assumed or stated; what it does is computed, and no measurement takes it out of a band."""
+def test_half_and_double_of_the_working_load_are_in_the_band_of_what_ran_in(screw, oil):
+    """Assumed or stated; a trace of the raceway as it runs takes it out."""
     load = BY_NAME['working_load']
     case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
-    assert load.bounds(case) == pytest.approx((math.sqrt(2) * 990, 4 * math.sqrt(2) * 990))
-    run_in = replace(with_raceway(screw, state='run_in'), working_load=1000.0)
+    assert load.bounds(case) is None
+    run_in = with_raceway(screw, state='run_in')
+    assumed = math.sqrt(2) * 990, 4 * math.sqrt(2) * 990
+    assert load.bounds(replace(case, screw=run_in)) == pytest.approx(assumed)
+    traced = with_raceway(run_in, traced='run_in')
+    assert load.bounds(replace(case, screw=traced)) is None
+    run_in = replace(run_in, working_load=1000.0)
     assert load.bounds(replace(case, screw=run_in)) == (500.0, 2000.0)
     found = sensitivity_record(run_in, oil, POINT, inputs=[load, BY_NAME['temperature']])
     row = row_of(found, 'working_load_N')
     assert [row[end] for end in ('low', 'stated', 'high')] == [500.0, 1000.0, 2000.0]
     light, heavy = row['onset_factors']
     assert light > 1 > heavy > 0
-    assert found['limit_band'] == row_of(found, 'temperature_degC')['onset_factors']
-    assert not load.measured
+    heat = row_of(found, 'temperature_degC')['onset_factors']
+    factors = [('', heat), ('', [light, heavy])]
+    assert found['limit_band'] == pytest.approx(unknown_band(factors))
+    assert load.measured in [step['measurement'] for step in found['measure']]
 
 
 def test_an_end_that_the_model_refuses_is_not_known(screw, oil, refused):
     """It leaves a band that is not known, and the page has the sentence."""
-    soft = dict.fromkeys(('hardness', 'run_in_low', 'run_in_pressure', 'run_in_high'), 1.8e9)
-    heavy = [replace(BY_NAME['preload'], times=3.0, measured='torque without load')]
-    found = sensitivity_record(with_raceway(screw, **soft), oil, POINT, inputs=heavy)
+    heavy = [replace(BY_NAME['preload'], times=100.0, measured='torque without load')]
+    found = sensitivity_record(screw, oil, POINT, inputs=heavy)
     assert math.isnan(found['inputs'][0]['onset_factors'][1])
     assert all(map(math.isnan, found['limit_band']))
-    assert 'see working_load_N, run_in_pressure_GPa' in sensitivity_page(found)
+    assert 'allowed is up to static_rating_kN' in sensitivity_page(found)
     refused('smooth', sensitivity_record, with_raceway(screw, rms=0.0), oil, POINT)
 
 
@@ -254,7 +260,7 @@ def test_the_page_has_a_line_per_input_and_keeps_the_bands_apart(record):
     assert f'not known  contact begins at {low:.2g} to {high:.2g} times the stated speed' in page
     low, high = record['numerical_band']
     assert f'numerics   contact begins at {low:.2g} to {high:.2g} times' in page
-    assert 'measure    torque at slow speeds: ' in page
+    assert 'measure    film floor by torque at slow speeds: ' in page
     assert 'then       oil temperature at the nut: ' in page
 
 

@@ -3,13 +3,15 @@
 """The sentence about contact, limit and zone follows from what the surface holds."""
 
 import copy
-from dataclasses import replace
+from dataclasses import asdict, replace
 import math
 
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from surrogate.screw.onset_record import extrapolated
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import ContactOnset, onset_of_surface, shipped_surface, Surface, ZoneLimits
 from surrogate.surface.contact_onset import law_doubt, usual_limits
 from surrogate.surface.file import read
@@ -86,6 +88,24 @@ def test_the_law_says_where_no_raceway_was_marched(micrometres, key, says):
     rms = micrometres * 1e-6
     assert law_doubt(rms=rms) == (says(key) if key else '')
     assert law_doubt(rms=rms, measured=True) == ''
+
+
+@pytest.mark.parametrize(
+    ('low', 'high', 'key'),
+    [(0.05, 0.4, None), (0.125, 1.0, 'rms_up_to_1'), (0.04, 0.4, 'rms_from_0_04')],
+)
+def test_the_law_says_where_a_likely_raceway_was_not_marched(low, high, key, says, screw, oil):
+    """A rolled raceway of Ra 0.3 um has 0.1 to 0.8 um; its onset, its surface and its record."""
+    likely = [low * 1e-6, high * 1e-6]
+    text = says(key) if key else ''
+    assert law_doubt(rms=0.3e-6, likely_rms=likely) == text
+    assert law_doubt(rms=0.3e-6, likely_rms=likely, measured=True) == ''
+    rolled = with_raceway(screw, rms=0.3e-6, rms_low=likely[0], rms_high=likely[1])
+    assert extrapolated(rolled) == ([text] if key else [])
+    header = copy.deepcopy(DATA.header)
+    header['inputs']['screw']['roughness'] |= asdict(rolled.roughness)
+    surface = onset_of_surface(Surface(replace(DATA, header=header)))
+    assert (f'; {text}; ' in surface.sentence()) is bool(key)
 
 
 def test_the_record_has_the_numbers_of_the_sentence():
