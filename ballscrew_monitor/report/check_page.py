@@ -16,8 +16,7 @@ from ballscrew_monitor.report.health_history import by_axis, healths
 from ballscrew_monitor.report.health_part import verdict_box
 from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.page import element, Markup, table, TableCell, TableRow
-from surrogate.surface import onset_of_surface, Surface
-from surrogate.surface.shipped import SHIPPED
+from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
 NEEDED = {
     'Axial load': 'the axial load, or the motor torque that it can be derived from',
@@ -178,7 +177,7 @@ def _surfaces(surfaces: Mapping[str, str]) -> Iterator[Markup]:
         surface = Surface.load(file)
         onset = onset_of_surface(surface)
         text = f'Axis {axis}: {Path(file).name}, tier {surface.tier}. {onset.sentence()}.'
-        is_own = surface.tier == 'full' and Path(file).parent != SHIPPED
+        is_own = surface.tier == 'full' and Path(file).parent != shipped_surface().parent
         if is_own and not (onset.marched or onset.calibrated):
             text += ' Its raceway was not marched: `ballscrew surface build` marches it.'
         yield element('p', text)

@@ -114,7 +114,7 @@ def test_map_read_ghosts_and_limit_are_those_of_the_corrected_surface(page_parts
         point, _ = asked.ask('read', speed_rpm=600, load_N=1500.0)
         said.append((point['rcs'], ghost['outside_share'], asked.view.limit, arrays['zone']))
     (rcs, share, limit, zone), (solved, share_then, limit_then, zone_then) = said
-    assert (rcs < 0.001, share) == (True, 0.0)
+    assert (rcs < 0.01, share) == (True, 0.0)
     assert (solved, share_then) == (pytest.approx(0.3), 1.0)
     assert limit['speed_rpm'] < 600.0 < limit_then['speed_rpm']
     assert np.any((zone == 1.0) & (zone_then == 0.0))

@@ -192,7 +192,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
         'nodes        40 x 27 x 9, 0 without a number',
-        'friction_torque [N m]                        0.00166',
+        'friction_torque [N m]                        0.00169',
         'numpy        ',
     ):
         assert part in text

@@ -59,7 +59,7 @@ def test_a_page_says_what_is_known(run, capsys, says):
     assert run('closed_form', '--speed-rpm', 600, '--load-N', 1000) == 0
     text = capsys.readouterr().out
     assert says('tier_closed_form_600') in text
-    assert says('efficiency_0_9359') in text
+    assert says('efficiency_0_9358') in text
     assert 'regime               mixed' in text
     assert 'worst contact        relieved nut, nut' in text
 
