@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.points import PointColumns, read_points
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 from ballscrew_monitor.settings.parameters import read_file
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, Writer
 import numpy as np
@@ -287,6 +287,7 @@ NUMBER = itertools.count()
 
 @pytest.mark.parametrize('name', SEEDS)
 @given(changes=CHANGES)
+@settings(max_examples=40)
 def test_a_changed_file_is_read_or_refused(name, seeds, tmp_path_factory, changes):
     path, data, read = seeds(name)
     folder = path.parent / f'{next(NUMBER)}'

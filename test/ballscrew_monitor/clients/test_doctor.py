@@ -19,7 +19,7 @@ from std_msgs.msg import Float64
 from surrogate.files import InputError
 
 # How long to listen [s] until all has been heard, the slow topic twice.
-LISTENING = (1.5, 6.0, 24.0)
+LISTENING = (1.0, 6.0, 24.0)
 AHEAD = 3600  # [s]
 EVERY = 0.7  # [s] between two messages of the slow topic
 BEST_EFFORT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)

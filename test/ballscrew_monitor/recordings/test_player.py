@@ -342,7 +342,7 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
 
 def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
     node.start('--params-file', PARAMS, use_sim_time='true')
-    options = ('--rate', 0.5, '--params', PARAMS)
+    options = ('--rate', 1, '--params', PARAMS)
     with play(node.domain, short_bag, *options, command=('-c', GATED)) as player:
         out, err = player.communicate('play\n', timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')

@@ -320,7 +320,7 @@ def outcome(name, text, rate, *, appended=False):
 
 @given(st.sampled_from(FORMS), st.floats(-1.0, 3.7), st.booleans())
 @example(('Time', UNSTATED['days of a sheet']), 0.0, False)
-@settings(max_examples=300)
+@settings(max_examples=120)
 def test_in_whatever_form_a_time_stands_the_rate_is_right_or_refused(form, decade, appended):
     rate = 10**decade
     found = outcome(*form, rate, appended=appended)
