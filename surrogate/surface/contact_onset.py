@@ -257,7 +257,7 @@ def onset_of_surface(
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
-        likely_rms=[screw['roughness'].get(name) for name in ('rms_low', 'rms_high')],
+        likely_rms=(screw['roughness'].get('rms_low'), screw['roughness'].get('rms_high')),
         calibrated=screw['roughness']['onset_band'] is not None,
         marched=screw['roughness'].get('marched_film') is not None,
         lead=surface.lead,

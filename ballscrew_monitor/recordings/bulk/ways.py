@@ -81,12 +81,13 @@ def walk_each(
         number, after = way[at], which[at] + 1
         first_step = step_ends[number - 1] if number > 0 else 0
         first_letter = joint_ends[number - 1] if number > 0 else 0
+        last_step, last_letter = step_ends[number], joint_ends[number]
         walk(
             data,
             ends[which[at]],
             ends[after],
-            steps[first_step : step_ends[number]],
-            joints[first_letter : joint_ends[number]],
+            steps[first_step:last_step],
+            joints[first_letter:last_letter],
             walked[at],
         )
 

@@ -1,10 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Times whose parts stand in columns of their own, joined in one: seconds and parts of them, as of
-ROS; hours, minutes and seconds, perhaps behind year, month and day.
+Times whose parts stand in columns of their own, joined in one.
 
-Names tell the parts, and their numbers in the first rows prove them.
+They are seconds and parts of them, as of ROS, or hours, minutes and seconds, perhaps behind year,
+month and day. Names tell the parts, and their numbers in the first rows prove them.
 
 """
 

@@ -8,6 +8,7 @@ Each layout is an entry of a table. What none of them is stays as it is.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+import contextlib
 import json
 import math
 from typing import Any
@@ -33,10 +34,10 @@ def parsed(text: bytes) -> Content:
     """Return the content of a JSON text, or of one in each of its lines; raises ValueError."""
     try:
         return json.loads(text)
-    except json.JSONDecodeError as error:
-        if not error.msg.startswith('Extra data'):
+    except json.JSONDecodeError:
+        lines = [line for line in text.splitlines() if line.strip()]
+        if len(lines) < 2 or not _is_json(lines[0]):
             raise
-    lines = [line for line in text.splitlines() if line.strip()]
     records = []
     for number, line in enumerate(lines):
         try:
@@ -45,6 +46,13 @@ def parsed(text: bytes) -> Content:
             if number + 1 < len(lines):
                 raise Unreadable(f'line {number + 1} is no JSON: {error.msg}') from None
     return records
+
+
+def _is_json(line: bytes) -> bool:
+    with contextlib.suppress(json.JSONDecodeError):
+        json.loads(line)
+        return True
+    return False
 
 
 def plain_table(content: Content) -> Content:

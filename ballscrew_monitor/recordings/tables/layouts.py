@@ -83,7 +83,8 @@ PERIOD = re.compile('([nuµμm]?)s(?:ec(?:onds?)?|ek(?:unden?)?)?')
 RATE = re.compile('(k?)hz')
 """A number with its unit; units of a period and of a rate."""
 PER_SECOND = re.compile(
-    r'\s*[\[(]?\s*(?:1\s*/\s*|(?:(?:samples|values|rows|points)\s*)?(?:/|\bper\b)\s*)s(?:ec(?:ond)?)?'
+    r'\s*[\[(]?\s*(?:1\s*/\s*|(?:(?:samples|values|rows|points)\s*)?(?:/|\bper\b)\s*)'
+    r's(?:ec(?:ond)?)?'
     r'\s*[\])]?$',
     re.I,
 )

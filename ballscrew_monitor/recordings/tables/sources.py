@@ -466,7 +466,8 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with _findable(path):
         head = heads.find_head(lines, layout)
     _check_columns(path, len(head.names))
-    if len(head.names) == 1 and (sign := unread_separator(lines[max(head.begin - 1, 0) :])):
+    names = max(head.begin - 1, 0)
+    if len(head.names) == 1 and (sign := unread_separator(lines[names:])):
         raise InputError(
             f'log {path}: {sign} seems to part its cells, allowed are {listed(NAMES_OF_SIGNS)}: '
             'replace it by one of these'

@@ -24,7 +24,7 @@ from surrogate.builder.on_demand import solve_point
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
 AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock
-PLACE = OperatingPoint(speed=100.0, axial_load=-500.0, temperature=40.0)
+PLACE = OperatingPoint(speed=103.0, axial_load=-500.0, temperature=40.0)
 SUCCEEDED, CANCELED = GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED
 ABORTED = GoalStatus.STATUS_ABORTED
 MOST = 9  # goals that the node takes: one at work and eight that wait
@@ -198,7 +198,7 @@ def test_a_solve_corrects_the_surface_and_outlives_the_node(node, quick_surface,
     assert node.solvers()
 
     def lists_it():
-        return list(infos[-1].corrected_speed) == [100.0] and infos[-1].sha256 != base
+        return list(infos[-1].corrected_speed) == [103.0] and infos[-1].sha256 != base
 
     node.until(lists_it, 'the correction in the surface info')
     assert list(infos[-1].corrected_load) == [500.0]
@@ -208,7 +208,7 @@ def test_a_solve_corrects_the_surface_and_outlives_the_node(node, quick_surface,
     assert evaluated.results[0].efficiency == pytest.approx(result.full.efficiency, rel=1e-9)
     publish = node.machine()
     node.stamp = node.now() - 10_000_000
-    publish(100.0, -500.0)
+    publish(103.0, -500.0)
     node.until(lambda: states and states[-1].result.corrected, 'a corrected state')
 
     reloaded = node.call(Trigger, 'reload_surface')
