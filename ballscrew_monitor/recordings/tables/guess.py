@@ -155,13 +155,13 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
 
 
 def names_motion(path: Path) -> bool:
-    """Return False for a table whose names of columns are all of other things than a motion."""
+    """Return False for a table of which no column is named as a motion."""
     with contextlib.suppress(InputError):
         source = source_of(path)
         texts = source.head.symbols
         named = [read_name(name, texts.get(name, '')) for name in source.names()]
         kinds = {kind for one in named for kind in (one.kind, one.doubtful)}
-        return not source.head.named or bool(kinds & set(MOTION))
+        return bool(kinds & set(MOTION))
     return True
 
 

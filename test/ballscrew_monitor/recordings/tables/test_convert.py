@@ -54,9 +54,12 @@ TYPES = {
 
 
 def content_of(log, rate=10.0):
-    """Return the first map of a log, with what it asks for: the rate [Hz], units of currents."""
+    """Return the first map of a log, with what it asks for: the rate [Hz] and units."""
     content = guess(log).content
     for axis in content['axes'].values():
+        for kind, unit in (('speed', 'mm/s'), ('position', 'mm')):
+            if 'unit' in axis.get(kind, {}):
+                axis[kind]['unit'] = axis[kind]['unit'] or unit
         if 'unit' in axis.get('current', {}):
             axis['current'] |= {'unit': 'A', 'magnitude': False}
     if 'rate_Hz' in content['time']:
