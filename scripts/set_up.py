@@ -52,6 +52,7 @@ COMPILED = (
     'surrogate.ehl.solver',
     'ballscrew_monitor.judge.many',
     'ballscrew_monitor.health.collect',
+    'ballscrew_monitor.recordings.bulk.ways',
 )
 SOLVER_SOURCES = (
     'surrogate/ehl/kernels/*.py',
@@ -59,6 +60,7 @@ SOLVER_SOURCES = (
     'surrogate/surface/*.py',
     'surrogate/formulas/torque.py',
     f'{PACKAGE}/judge/*.py',
+    f'{PACKAGE}/recordings/bulk/*.py',
 )
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')

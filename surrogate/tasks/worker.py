@@ -29,6 +29,8 @@ from typing import Any, TextIO
 
 from surrogate.tasks.child import Frame, Task, UNWIND
 
+AFTER_CALLBACK = 0.02
+"""Seconds after which a task that is ended in a callback of C is ended again [s]."""
 SHARE_STEP = 0.01
 """A task tells when it has advanced by this share [-]."""
 listener: ContextVar[Callable[[Any], object] | None] = ContextVar('listener', default=None)
@@ -138,7 +140,15 @@ def main() -> None:
         signal.signal(number, signal.SIG_IGN)  # nothing interrupts the removal
         raise SystemExit(1)
 
+    def unwind_later(lost: 'sys.UnraisableHookArgs') -> None:
+        if isinstance(lost.exc_value, SystemExit):  # in a callback of C, which loses exceptions
+            signal.setitimer(signal.ITIMER_REAL, AFTER_CALLBACK)
+        else:
+            sys.__unraisablehook__(lost)
+
     signal.signal(signal.SIGTERM, unwind)
+    signal.signal(signal.SIGALRM, unwind)
+    sys.unraisablehook = unwind_later
     niceness, memory = map(int, sys.argv[1:])
     os.nice(niceness)
     if memory:

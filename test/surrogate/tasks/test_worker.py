@@ -4,6 +4,8 @@
 
 import json
 import math
+import os
+from pathlib import Path
 import struct
 import subprocess
 import sys
@@ -26,6 +28,25 @@ PLAIN = st.recursive(
     lambda parts: st.lists(parts, max_size=4) | st.dictionaries(st.text(max_size=8), parts),
     max_leaves=12,
 )
+ROOT = Path(__file__).resolve().parents[3]
+DEADLINE = 600.0  # [s] which only ends a hang
+CALLER = """
+import ctypes
+import os
+from pathlib import Path
+import signal
+import time
+
+def call_back():
+    os.kill(os.getpid(), signal.SIGTERM)
+
+def work(inputs):
+    try:
+        ctypes.CFUNCTYPE(None)(call_back)()
+        time.sleep(1e6)
+    finally:
+        Path('removed').touch()
+"""
 SCRIPT = """
 from surrogate.tasks.worker import task_name
 
@@ -96,3 +117,25 @@ def test_steps_are_told_and_shares_not_more_often_than_is_worth_it():
     finally:
         listener.reset(token)
     assert steps == [0.25, 0.5, {'stage': 'contact'}]
+
+
+def test_a_signal_in_a_callback_of_c_ends_the_task_after_it(tmp_path):
+    """A compiler calls back so. What the task has half made is removed, and nothing is printed."""
+    (tmp_path / 'caller.py').write_text(CALLER)
+    worker = [sys.executable, '-m', 'surrogate.tasks.worker', '0', '0']
+    task = json.dumps({'task': 'caller:work', 'inputs': {}}) + '\n'
+    path = os.pathsep.join([str(tmp_path), str(ROOT)])
+    with subprocess.Popen(
+        worker,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+        env=os.environ | {'PYTHONPATH': path},
+    ) as process:
+        process.stdin.write(task)
+        process.stdin.flush()
+        process.wait(timeout=DEADLINE)
+        assert (process.returncode, process.stderr.read()) == (1, '')
+    assert (tmp_path / 'removed').exists()
