@@ -73,7 +73,7 @@ def test_what_does_not_converge_is_counted_and_not_compared(monkeypatch):
 def test_errors_that_the_file_understates_fail_and_those_it_does_not_state_are_said():
     """A file whose stated errors are a hundredth of the true ones is not believed."""
     lying = replace(DATA, errors={name: 0.01 * error for name, error in DATA.errors.items()})
-    result = check_surface(lying, 30, 2, always)
+    result = check_surface(lying, 100, 1, always)
     assert result.efficiency <= EFFICIENCY_TOLERANCE
     assert not result.passed
     assert result.stated['rcs'] > STATED_FACTOR
