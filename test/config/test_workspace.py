@@ -141,12 +141,17 @@ def test_the_repository_alone_is_a_workspace_of_both_packages(tracked):
 
 @needs_colcon
 def test_the_node_runs_from_the_install_space_with_what_rosdep_brings(workspace, wait_for):
-    """The interfaces are those of the environment, as compiling them would take a minute."""
+    """
+    The interfaces are those of the environment, as compiling them would take a minute.
+
+    `setup.bash`, which colcon makes beside it where it knows bash, sources `setup.sh`.
+
+    """
     folder, _ = workspace
     bash('colcon build --base-paths src/ballscrew_monitor', folder)
     (folder / 'blind').mkdir()
     (folder / 'blind' / 'sitecustomize.py').write_text(BLIND.format(hidden=installed_by_pip()))
-    setup = f'export PYTHONPATH={shlex.quote(str(folder / "blind"))}; . install/setup.bash'
+    setup = f'export PYTHONPATH={shlex.quote(str(folder / "blind"))}; . install/setup.sh'
     python = f'{setup}; {shlex.quote(sys.executable)} -c'
     script = 'import ballscrew_monitor as package; print(package.__file__)'
     place = bash(f'{python} "{script}"', folder).strip()
@@ -159,7 +164,7 @@ def test_the_node_runs_from_the_install_space_with_what_rosdep_brings(workspace,
         environment = child_environment(domain)
         environment |= {'XDG_STATE_HOME': str(folder), 'ROS_LOG_DIR': str(folder / 'ros')}
         with subprocess.Popen(
-            ['bash', '-c', f'{setup}; exec {program}'],
+            ['sh', '-c', f'{setup}; exec {program}'],
             cwd=folder,
             env=environment,
             stdout=output,
