@@ -33,7 +33,7 @@ RUN apt-get update \
     && rosdep install -y --from-paths /ws/src --ignore-src -t exec \
     && python3 -m venv --system-site-packages /opt/venv \
     && /opt/venv/bin/pip install --no-cache-dir 'numba>=0.59' 'mcap>=1.1' 'zstandard>=0.20' \
-       'polars>=1.0' 'fastexcel>=0.12' 'starlette>=0.37' 'uvicorn>=0.40' 'websockets>=14.0' \
+       'lz4>=4.0' 'polars>=1.0' 'fastexcel>=0.12' 'starlette>=0.37' 'uvicorn>=0.40' 'websockets>=14.0' \
        'prometheus-client>=0.20' \
     && rm -rf /var/lib/apt/lists/* /ws/src /root/.ros \
     && useradd --system --uid 10001 --home-dir /run ballscrew \

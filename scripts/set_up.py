@@ -51,6 +51,7 @@ NUMERICAL = ('llvmlite', 'numba', 'numpy', 'pyyaml', 'scipy')
 COMPILED = (
     'surrogate.ehl.solver',
     'ballscrew_monitor.judge.many',
+    'ballscrew_monitor.recordings.bulk.ways',
     'ballscrew_monitor.health.collect',
     'ballscrew_monitor.recordings.bulk.ways',
 )

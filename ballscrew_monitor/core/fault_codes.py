@@ -169,11 +169,11 @@ class Fault(Worded):
     )
     INPUT_OTHER_CLOCK = (
         213,
-        'the stamps of an input are of the wall clock, the node on simulated',
-        'stamp with /clock or unset use_sim_time',
-        'its stamps are of the wall clock and the node runs on simulated time',
-        'the stamps are of the wall clock and the node runs on simulated time: set use_sim_time '
-        'to false, or stamp with /clock',
+        'the stamps of an input are more than a year ahead of the clock of the node',
+        'set the clock of its machine, or in a simulation stamp with /clock or unset use_sim_time',
+        'its stamps are more than a year ahead of the clock of the node',
+        'the stamps are more than a year ahead of the clock of the node: set the clock of its '
+        'machine, or in a simulation set use_sim_time to false, or stamp with /clock',
         'stamped by another clock',
     )
     INPUT_TOO_SHORT = (
@@ -248,9 +248,9 @@ class Fault(Worded):
     )
     SIMULATED_STAMPS = (
         234,
-        'stamps are of simulated time, the node on the wall clock',
-        'set use_sim_time',
-        'stamps are of simulated time and the node runs on the wall clock',
+        'stamps are more than a year behind the clock of the node',
+        'set the clock of their source, or use_sim_time if it is a simulation',
+        'stamps are more than a year behind the clock of the node',
     )
     LAG = (
         235,
@@ -328,6 +328,11 @@ class Fault(Worded):
         703,
         'another node of this name publishes on the same topics',
         'give one of both another name or namespace, or another ROS_DOMAIN_ID',
+    )
+    CLOCK_NOT_SET = (
+        704,
+        'the clock of the machine shows a time before this version was made',
+        'set it, by NTP or PTP: what is kept and recorded is dated by it',
     )
 
 

@@ -50,7 +50,7 @@ class Why(enum.IntEnum):
     OTHER_JOINTS = 0  # the message speaks of other joints: dropped, and nothing is wrong
     NOT_A_NUMBER = 1
     FUTURE = 2
-    OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
+    OTHER_CLOCK = 3  # stamps more than a year ahead: of another clock
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
     NOT_DECODED = 6  # truncated, or of another definition of its type

@@ -4,6 +4,7 @@
 
 from importlib.util import find_spec
 import sys
+from typing import Any
 
 from ballscrew_monitor.core.interrupts import BAD_INPUT
 
@@ -44,6 +45,22 @@ CURES = {
     'colcon build and source install/setup.bash',
 }
 """How to get what a package imports, by the name of the module."""
+LAST_FIELDS = {
+    'AxisHealth': 'since',
+    'BallScrewState': 'shelve_reason',
+    'Finding': 'target_load',
+    'HealthCause': 'text',
+    'HealthQuantity': 'reason',
+    'InputHealth': 'refusal',
+    'JudgeEvents': 'notes',
+    'OperatingPoint': 'axial_load_uncertainty',
+    'OutOfZone': 'acknowledge_reason',
+    'PointResult': 'contact_state',
+    'SurfaceInfo': 'numerical_factor_high',
+    'Totals': 'since',
+    'WindowStatistics': 'film_ratio_max',
+}
+"""The last field of each message; messages grow at their end, so an older package lacks one."""
 
 
 def require(*modules: str) -> None:
@@ -51,6 +68,14 @@ def require(*modules: str) -> None:
     for name in modules:
         if find_spec(name) is None:
             raise ModuleNotFoundError(f'No module named {name!r}', name=name)
+
+
+def check_interfaces(messages: Any) -> None:
+    """Raise ImportError if `messages`, the module of them, is older than this package."""
+    for name, field in LAST_FIELDS.items():
+        kind = getattr(messages, name, None)
+        if kind is None or field not in kind.get_fields_and_field_types():
+            raise ImportError(f'{name} has no {field}', name='ballscrew_msgs')
 
 
 def refuse(program: str, error: ImportError) -> int:

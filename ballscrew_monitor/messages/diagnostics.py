@@ -63,6 +63,7 @@ BUSY = (
     'publish_period, or give some axes a node of their own'
 )
 CLOCK_SET = 'the clock of the node was set {}; no duration holds the step'
+CLOCK_NOT_SET = f'{Fault.CLOCK_NOT_SET.text}: {Fault.CLOCK_NOT_SET.cure}'
 TWO_NODES = (
     'another node of this name runs on {} and publishes on the same topics: give one of both '
     'another name or namespace'
@@ -151,19 +152,25 @@ def recording(node: str, problem: str) -> DiagnosticStatus:
 
 
 def of_node(
-    node: str, signs: VitalSigns, step: int = 0, hosts: Sequence[str] = ()
+    node: str,
+    signs: VitalSigns,
+    step: int = 0,
+    hosts: Sequence[str] = (),
+    *,
+    is_clock_set: bool = True,
 ) -> DiagnosticStatus:
     """
     Return the status of the `node` itself, by full name.
 
-    `step` [ns] is by how much its clock was set not long ago, 0: it was not; `hosts` are those of
-    the nodes of this name, its own first.
+    `step` [ns] is by how much its clock was set not long ago, 0: it was not; `is_clock_set`
+    whether it ever was; `hosts` are those of the nodes of this name, its own first.
 
     """
     problem, code = BUSY if signs.is_busy else '', Fault.BUSY
-    if step:
-        text = CLOCK_SET.format('forward' if step > 0 else 'back')
-        problem, code = f'{text}; {problem}' if problem else text, Fault.CLOCK_SET
+    clock = CLOCK_SET.format('forward' if step > 0 else 'back') if step else ''
+    if clock or not is_clock_set:
+        code = Fault.CLOCK_SET if step else Fault.CLOCK_NOT_SET
+        problem = '; '.join(filter(None, [clock or CLOCK_NOT_SET, problem]))
     status = _of_node(node, NODE_PART, problem, IN_TIME, code)
     if others := ', '.join(hosts[1:]):
         _say(status, StatusSummary(ERROR, TWO_NODES.format(others), Fault.TWO_NODES))

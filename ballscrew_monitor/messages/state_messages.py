@@ -26,6 +26,7 @@ from ballscrew_monitor.core.judgement import (
     Severity,
     Zone,
 )
+from ballscrew_monitor.core.prerequisites import check_interfaces
 from ballscrew_monitor.core.state import MonitorSettings, WINDOW
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.judge.monitor import Monitor
@@ -38,6 +39,7 @@ from builtin_interfaces.msg import Time
 from surrogate.surface import Regime, Surface
 from surrogate.units import TURN
 
+check_interfaces(msg)
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
 NOT_CONFIGURED = InputState.NOT_CONFIGURED

@@ -14,6 +14,7 @@ import socket
 import time
 import uuid
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.vitals import Vitals
 from ballscrew_monitor.messages import diagnostics
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -38,6 +39,7 @@ INSTANCE_QOS = QoSProfile(depth=10)
 FORGOTTEN = 5.0  # [s] without a word of another node after which it is gone
 LONGEST_HOST = 100  # characters
 MOST_OTHERS = 10  # that are remembered
+MADE = 1_767_225_600 * SECOND  # [ns] begin of 2026: no clock that was set shows an earlier time
 
 
 def own_instance() -> KeyValue:
@@ -89,7 +91,8 @@ class Heartbeat:
         step = self._step if now - self._step_at < STEP_SHOWN else 0
         name = self._node.get_fully_qualified_name()
         hosts = [self._instance.value, *self.others]
-        return [diagnostics.of_node(name, signs, step, hosts)]
+        is_set = self._node.get_parameter('use_sim_time').value or time.time_ns() >= MADE
+        return [diagnostics.of_node(name, signs, step, hosts, is_clock_set=is_set)]
 
     def set_clock(self, step: int) -> None:
         """Let the diagnostics say for a while that the clock was set by a `step` [ns]."""

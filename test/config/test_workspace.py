@@ -14,7 +14,11 @@ import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.settings.qos import started_node
+from ballscrew_msgs.msg import OperatingPoint
+from ballscrew_msgs.srv import EvaluateOperatingPoint
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = ROOT / 'docs' / 'guide' / 'start.md'
@@ -24,9 +28,7 @@ COLCON = shutil.which('colcon', path=PATH)
 DEADLINE = 600.0  # [s] which only ends a hang
 BOTH = ['ballscrew_msgs', 'ballscrew_monitor']
 LIST = 'colcon list --topological-order --names-only'
-# What rosdep has a key of, and Ubuntu 24.04 a package; numba has a key and no package.
-UBUNTU = {f'python3-{name}' for name in 'hypothesis matplotlib numpy pytest scipy yaml'.split()}
-UBUNTU |= {'python3-pytest-timeout'}
+ROSDEP = yaml.safe_load((ROOT / 'test' / 'reference' / 'rosdep.yaml').read_text())
 STAND_INS = """
 source() { :; }
 sudo() { :; }
@@ -47,8 +49,6 @@ class Blind(PathFinder):
 
 sys.meta_path[sys.meta_path.index(PathFinder)] = Blind
 """
-# What the guide has pip install.
-HIDDEN = 'numba mcap zstandard polars fastexcel rosbags starlette uvicorn websockets'.split()
 
 needs_colcon = pytest.mark.skipif(
     COLCON is None, reason='colcon is neither in the environment nor on the PATH'
@@ -87,6 +87,29 @@ def bash(script, folder, **environment):
     return done.stdout
 
 
+def installed_by_pip():
+    """Return the modules that the guide has pip install into a venv."""
+    lines = re.findall(r'venv/bin/pip install (.*)', GUIDE.read_text(encoding='utf-8'))
+    names = [name for line in lines for name in shlex.split(line)]
+    return [re.split('[<>=]', name)[0].replace('-', '_') for name in names]
+
+
+def ask(domain, wait_for, node):
+    """Return what a running node answers about a point."""
+    with started_node('caller', domain) as caller:
+
+        def spin():
+            assert node.poll() is None
+            caller.executor.spin_once(timeout_sec=0.02)
+
+        client = caller.create_client(EvaluateOperatingPoint, '/ballscrew_monitor/evaluate')
+        wait_for(client.service_is_ready, 'the service', meanwhile=spin)
+        point = OperatingPoint(speed=60.0, axial_load=1000.0, temperature=40.0)
+        future = client.call_async(EvaluateOperatingPoint.Request(axis='x', points=[point]))
+        wait_for(future.done, 'the answer', meanwhile=spin)
+        return future.result()
+
+
 def steps_of_the_guide():
     """Return the commands that make a workspace, in which `colcon build` only lists."""
     text = GUIDE.read_text(encoding='utf-8').partition(SECTION)[2]
@@ -118,11 +141,16 @@ def test_the_repository_alone_is_a_workspace_of_both_packages(tracked):
 
 @needs_colcon
 def test_the_node_runs_from_the_install_space_with_what_rosdep_brings(workspace, wait_for):
-    """The interfaces are those of the environment, as compiling them would take a minute."""
+    """
+    The interfaces are those of the environment, as compiling them would take a minute.
+
+    `setup.bash`, which colcon makes beside it where it knows bash, sources `setup.sh`.
+
+    """
     folder, _ = workspace
     bash('colcon build --base-paths src/ballscrew_monitor', folder)
     (folder / 'blind').mkdir()
-    (folder / 'blind' / 'sitecustomize.py').write_text(BLIND.format(hidden=HIDDEN))
+    (folder / 'blind' / 'sitecustomize.py').write_text(BLIND.format(hidden=installed_by_pip()))
     setup = f'export PYTHONPATH={shlex.quote(str(folder / "blind"))}; . install/setup.sh'
     python = f'{setup}; {shlex.quote(sys.executable)} -c'
     script = 'import ballscrew_monitor as package; print(package.__file__)'
@@ -146,12 +174,39 @@ def test_the_node_runs_from_the_install_space_with_what_rosdep_brings(workspace,
                 lambda: node.poll() is not None or 'axis x reads load' in log.read_text(),
                 'the axis of the node',
             )
+            assert ask(domain, wait_for, node).success
             node.send_signal(signal.SIGINT)
             assert node.wait(DEADLINE) == 0, log.read_text()
     assert 'is judged by the full surface' in log.read_text()
 
 
-def test_rosdep_is_asked_for_what_ubuntu_has():
-    manifest = ElementTree.parse(ROOT / 'package.xml').getroot()
-    keys = {str(element.text) for element in manifest if element.tag.endswith('depend')}
-    assert {key for key in keys if key.startswith('python3-')} <= UBUNTU
+def keys():
+    """Return the keys that rosdep is asked for; the workspace itself has the others."""
+    manifests = [ElementTree.parse(ROOT / folder / 'package.xml') for folder in ('', 'msg_defs')]
+    asked = {
+        str(element.text)
+        for manifest in manifests
+        for element in manifest.getroot()
+        if element.tag.endswith('depend')
+    }
+    return asked - set(BOTH)
+
+
+def test_rosdep_knows_every_key():
+    """Of Python packages Ubuntu 24.04 lacks numba, for which rosdep has a rule all the same."""
+    assert keys() == {*ROSDEP['rules'], *ROSDEP['released']}
+
+
+@pytest.mark.parametrize('distribution', ROSDEP['platforms'])
+def test_rosdep_resolves_every_key_to_a_package_of_ubuntu(distribution):
+    lookup = pytest.importorskip('rosdep2.lookup', reason='rosdep is not installed')
+    debian = pytest.importorskip('rosdep2.platforms.debian')
+    rules = ROSDEP['rules'] | {
+        name: {'ubuntu': [f'ros-{distribution}-{name.replace("_", "-")}']}
+        for name in ROSDEP['released']
+    }
+    platform, installer = ('ubuntu', ROSDEP['platforms'][distribution]), debian.AptInstaller()
+    for key in keys():
+        definition = lookup.RosdepDefinition(key, rules[key])
+        kind, rule = definition.get_rule_for_platform(*platform, ['apt', 'pip'], 'apt')
+        assert (kind, len(installer.resolve(rule))) == ('apt', 1), key

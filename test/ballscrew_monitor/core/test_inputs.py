@@ -76,7 +76,11 @@ def test_a_stamp_as_far_ahead_as_allowed_is_taken_and_any_before_a_clock_starts(
         (
             inputs.YEAR + 1,
             Why.OTHER_CLOCK,
-            ['wall clock', 'simulated time', 'set use_sim_time to false'],
+            [
+                'more than a year ahead',
+                'set the clock of its machine',
+                'set use_sim_time to false',
+            ],
         ),
     ],
 )

@@ -8,8 +8,9 @@ import re
 import subprocess
 import sys
 
-from ballscrew_monitor.core.prerequisites import CURES, refuse, require
+from ballscrew_monitor.core.prerequisites import CURES, LAST_FIELDS, refuse, require
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_msgs import msg
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -94,6 +95,13 @@ from ballscrew_monitor.node.__main__ import main
 
 sys.exit(main([]))
 """
+OLDER = """
+from ballscrew_msgs.msg import BallScrewState
+
+fields = BallScrewState.get_fields_and_field_types()
+fields.popitem()
+BallScrewState.get_fields_and_field_types = classmethod(lambda kind: fields)
+"""
 # All that rosdep does not bring, and what no command of the node is for.
 OPTIONAL = 'numba matplotlib scipy mcap zstandard lz4 polars contourpy fastexcel starlette'
 
@@ -133,6 +141,23 @@ def test_the_node_without_a_package_says_how_to_get_it(module, says):
     done = python(NODE, module)
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr == f'ballscrew_monitor: {says(module)}\n'
+
+
+def test_interfaces_of_an_older_version_are_refused_by_node_and_commands(places, says):
+    """That is, a workspace in which they were not built again."""
+    sentence = says('interfaces_old')
+    done = python(OLDER + NODE, '')
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == f'ballscrew_monitor: {sentence}\n'
+    done = python(OLDER + COMMANDS, '', 'replay {bag} --out {out}'.format_map(places))
+    assert (done.stdout, done.stderr) == ('2\n', f'ballscrew: {sentence}\n')
+
+
+def test_the_last_field_of_each_message_is_known():
+    kinds = {name: kind for name, kind in vars(msg).items() if isinstance(kind, type)}
+    assert LAST_FIELDS == {
+        name: [*kind.get_fields_and_field_types()][-1] for name, kind in kinds.items()
+    }
 
 
 def test_the_node_loads_without_what_rosdep_does_not_bring():

@@ -477,6 +477,16 @@ def test_the_node_says_that_its_clock_was_set(share, step, word, says):
     assert values_of(status)['Clock step [s]'] == f'{step / SECOND:.6g}'
 
 
+@pytest.mark.parametrize(('share', 'busy'), [(0.1, ''), (0.9, '; ')])
+def test_the_node_says_that_its_clock_was_never_set(share, busy, says):
+    signs = VitalSigns(processor_share=share)
+    status = diagnostics.of_node('node', signs, is_clock_set=False)
+    assert said(status) == (WARN, says('clock_not_set') + (busy and busy + says('busy')))
+    assert codes_of([status]) == [Fault.CLOCK_NOT_SET]
+    after = diagnostics.of_node('node', signs, SECOND, is_clock_set=False)
+    assert after == diagnostics.of_node('node', signs, SECOND)
+
+
 @pytest.mark.parametrize('step', [0, SECOND])
 def test_the_node_says_that_another_one_has_its_name(step, says):
     status = diagnostics.of_node('node', VitalSigns(), step, ['here', 'there', 'beyond'])

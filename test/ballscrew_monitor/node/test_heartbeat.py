@@ -6,10 +6,16 @@ import contextlib
 import signal
 import socket
 
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.messages.diagnostics import HOST
+from ballscrew_monitor.node import heartbeat
 from ballscrew_monitor.node.heartbeat import BEAT_QOS, PROMISE
+from ballscrew_monitor.settings.qos import started_node
 from diagnostic_msgs.msg import DiagnosticStatus
+import pytest
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.parameter import Parameter
 from std_msgs.msg import UInt64
 
 
@@ -72,6 +78,18 @@ def test_the_status_of_the_node_says_what_it_works(node, says):
     said = {says('keeps_up'): DiagnosticStatus.OK, says('busy'): DiagnosticStatus.WARN}
     assert said[status.message] == status.level
     assert (values['Processor share [-]'] >= 0.9) == (status.level == DiagnosticStatus.WARN)
+
+
+@pytest.mark.parametrize(('second', 'is_told'), [(946_684_800, True), (1_800_000_000, False)])
+def test_a_clock_of_the_year_2000_is_told(monkeypatch, says, second, is_told):
+    """But not by a node on simulated time, which begins when it likes."""
+    monkeypatch.setattr(heartbeat.time, 'time_ns', lambda: second * SECOND)
+    with free_domain() as domain, started_node('n', domain) as node:
+        beats = heartbeat.Heartbeat(node, clock=node.get_clock())
+        for simulated in (False, True):
+            node.set_parameters([Parameter('use_sim_time', value=simulated)])
+            (status,) = beats.statuses()
+            assert (status.message == says('clock_not_set')) == (is_told and not simulated)
 
 
 def test_two_nodes_of_one_name_hear_of_each_other(node, tmp_path, says):

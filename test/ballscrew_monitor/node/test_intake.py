@@ -231,6 +231,30 @@ def test_turns_that_are_judged_compiled_hold_all_in_the_order_of_arrival(bench):
     assert sum(intake.losses) > 0
 
 
+def test_a_leap_of_simulated_time_ends_a_turn_that_is_judged_compiled(bench, monkeypatch):
+    intake, steps, turns = AtOnce(bench), [], []
+    bench.axis.monitor = types.SimpleNamespace(set_clock=lambda due, now: steps.append(now - due))
+    monkeypatch.setattr(
+        bench.intake, '_take_many', lambda turn: turns.append(turn.events['arrival'].tolist())
+    )
+    for _ in range(4):
+        bench.publish('speed', 1.0)
+    found = held(bench, 4)
+    clock = types.SimpleNamespace(readers=[])
+
+    def shown(second):
+        time = types.SimpleNamespace(sec=second, nanosec=0)
+        return types.SimpleNamespace(topic=clock, message=types.SimpleNamespace(clock=time))
+
+    waiting = [shown(9), found[0], shown(10), found[1], shown(500), found[2], shown(20), found[3]]
+    monkeypatch.setattr(bench.intake, '_clock', clock)
+    monkeypatch.setattr(bench.intake, '_waiting', lambda: waiting)
+    bench.intake.drain()
+    assert turns == [[9 * SECOND, 10 * SECOND], [500 * SECOND], [20 * SECOND]]
+    assert steps == [489 * SECOND, -481 * SECOND]
+    assert intake.counted == 4
+
+
 @pytest.mark.parametrize('hours', [1, -1])
 def test_a_step_of_the_system_clock_is_one_event_between_two_turns(bench, monkeypatch, hours):
     """It is one of the steady clock the other way round."""

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages of a turn as an array: the events that they give one by one, in the same order."""
 
+import dataclasses
 import math
 import random
+import struct
 import types
 from types import MappingProxyType
 
@@ -11,7 +13,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import ordered, Why
 from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.monitor import fill
-from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL, Row
+from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL, Row, SAMPLE
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.node.burst import Burst
 from ballscrew_monitor.node.freeze_frame import FreezeFrame
@@ -87,9 +89,15 @@ class Inputs:
             heard[0].topic.count((axis.name, event.source), heard[0].number, heard[1])
         return events
 
+    def reader(self, reading):
+        return TurnReader(self.axes, lambda one: self.one_by_one(one, reading))
+
     def turn(self, heard, reading):
-        reader = TurnReader(self.axes, lambda one: self.one_by_one(one, reading))
-        return reader.turn(Burst.of(heard), reading)
+        return self.reader(reading).turn(Burst.of(heard), reading)
+
+    def events(self, heard, reading):
+        """Return what the messages say one by one, in the order of judging."""
+        return ordered([event for one in heard for event in self.one_by_one(one, reading)])
 
 
 def stamped(message, stamp):
@@ -146,6 +154,15 @@ def records_of(events):
     return records, ['xy'.index(axis.name) for axis, _ in events], named
 
 
+def same(turn, events):
+    """Return the records of events, after it is found that a turn has the same."""
+    records, numbers, named = records_of(events)
+    assert turn.events.tobytes() == records.tobytes()
+    assert turn.numbers.tolist() == numbers
+    assert turn.joints == named
+    return records
+
+
 @pytest.mark.parametrize('ahead', [0, 10 * SECOND])
 @pytest.mark.parametrize('publishers', [1, 2])
 @pytest.mark.parametrize('seed', range(3))
@@ -155,11 +172,7 @@ def test_events_are_those_of_the_messages_one_by_one(seed, publishers, ahead):
     reading = Reading(ahead, several if publishers > 1 else frozenset())
     turn = inputs.turn(random_messages(inputs, seed), reading)
     messages = random_messages(others, seed)
-    events = ordered([event for one in messages for event in others.one_by_one(one, reading)])
-    records, numbers, named = records_of(events)
-    assert turn.events.tobytes() == records.tobytes()
-    assert turn.numbers.tolist() == numbers
-    assert turn.joints == named
+    records = same(turn, others.events(messages, reading))
     assert {int(why) for why in records['why'][records['kind'] == REFUSAL]} >= {
         Why.OTHER_JOINTS,
         Why.NOT_A_NUMBER,
@@ -172,6 +185,113 @@ def test_events_are_those_of_the_messages_one_by_one(seed, publishers, ahead):
         assert {key: one.several for key, one in topic.sources.items()} == {
             key: one.several for key, one in other.items()
         }
+
+
+def damaged(data, draw):
+    """Return the bytes of a message cut off, lengthened, changed, or of another encapsulation."""
+    at = draw.randrange(len(data))
+    after = at + 1
+    return draw.choice(
+        [
+            data[:at],
+            data + bytes(draw.randrange(1, 9)),
+            data[:at] + bytes([draw.choice([0, 1, 0x7F, 0x80, 0xFF])]) + data[after:],
+            bytes([0, draw.choice([0, 2, 3, 6, 7, 10]), 0, draw.randrange(4)]) + data[4:],
+            data,
+        ]
+    )
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_damaged_messages_say_in_a_turn_what_they_say_one_by_one(seed):
+    """Also those that stand before and after them in the turn."""
+    inputs, others, draw = Inputs(), Inputs(), random.Random(seed)
+    whole = {
+        SHARED: serialize_message(joints(x=1.5, y=-2.5, longer_name=3.5)),
+        '/x/load': serialize_message(load(-1000.0)),
+    }
+    messages = [(name, damaged(whole[name], draw)) for _ in range(300) for name in whole]
+    messages.append((SHARED, b''))
+    turn = inputs.turn([inputs.heard(*each) for each in messages], Reading())
+    events = others.events([others.heard(*each) for each in messages], Reading())
+    records = same(turn, events)
+    assert {*records['kind'].tolist()} == {SAMPLE, REFUSAL}
+    assert {Why.NOT_DECODED, Why.OTHER_JOINTS} <= {*records['why'].tolist()}
+
+
+def big_endian(*speeds):
+    """Return a JointState with joints x, y, ... as a machine of the other byte order sends it."""
+    parts = bytearray()
+
+    def put(code, *numbers):
+        parts.extend(bytes(-len(parts) % struct.calcsize(f'>{code}')))
+        parts.extend(struct.pack(f'>{len(numbers)}{code}', *numbers))
+
+    put('I', *divmod(NOW, SECOND), 1)
+    parts.append(0)  # frame_id
+    put('I', len(speeds))
+    for name in 'xyz'[: len(speeds)]:
+        put('I', 2)
+        parts.extend(name.encode() + b'\0')
+    put('I', 0)  # positions
+    put('I', len(speeds))
+    put('d', *speeds)
+    put('I', 0)  # efforts
+    return bytes(4) + bytes(parts)
+
+
+def test_both_byte_orders_and_orders_of_names_are_read_within_one_turn():
+    inputs = Inputs()
+    messages = [joints(x=1.0, y=2.0), joints(y=4.0, x=3.0), big_endian(5.0, 6.0)]
+    messages += [joints(z=0.0, y=8.0, x=7.0), joints(x=9.0, y=10.0)]
+    first, second = inputs.turn(
+        [inputs.heard(SHARED, each) for each in messages], Reading()
+    ).by_axis()
+    assert first.events['value'].tolist() == [1.0, 3.0, 5.0, 7.0, 9.0]
+    assert second.events['value'].tolist() == [2.0, 4.0, 6.0, 8.0, 10.0]
+
+
+def test_a_reader_follows_what_changes_between_turns():
+    """Publishers that come and go, a parameter, and an axis that begins to read a topic."""
+
+    def several(inputs, publishers):
+        inputs.topics[SHARED].loss.match(publishers)
+
+    def more_future(inputs):
+        for axis in inputs.axes:
+            axis.monitor.settings = dataclasses.replace(
+                axis.monitor.settings, max_future=60 * SECOND
+            )
+
+    def another_reader(inputs):
+        y_load = inputs.topics['/y/load']
+        y_load.readers.append((inputs.axes[0], y_load.readers[0][1]))
+
+    changes = [
+        lambda inputs: None,
+        lambda inputs: several(inputs, 2),
+        lambda inputs: several(inputs, 1),
+        more_future,
+        lambda inputs: several(inputs, 0),
+        another_reader,
+    ]
+    inputs, others, counts = Inputs(), Inputs(), []
+    reader = inputs.reader(Reading())
+    for seed, change in enumerate(changes):
+        for each in (inputs, others):
+            change(each)
+        turn = reader.turn(Burst.of(random_messages(inputs, seed)), Reading())
+        same(turn, others.events(random_messages(others, seed), Reading()))
+        why = turn.events['why'][turn.events['kind'] == REFUSAL]
+        counts.append(int((why == Why.FUTURE).sum()))
+        for name, topic in inputs.topics.items():
+            found, wanted = (
+                {key: counter.several for key, counter in one.sources.items()}
+                for one in (topic, others.topics[name])
+            )
+            assert found == wanted
+    assert min(counts[:3]) > 0
+    assert max(counts[3:]) == 0
 
 
 def test_each_axis_has_its_events_and_the_joints_that_these_name():
@@ -271,8 +391,7 @@ def test_states_and_rows_are_the_same_judged_one_by_one_and_compiled(more):
                 for part in inputs.turn(heard, reading).by_axis():
                     spoken[part.axis.name].judge_many(part)
             else:
-                events = [event for one in heard for event in inputs.one_by_one(one, reading)]
-                for axis, event in ordered(events):
+                for axis, event in inputs.events(heard, reading):
                     spoken[axis.name].judge_each(event)
         ways.append(spoken)
     each, many = ways
