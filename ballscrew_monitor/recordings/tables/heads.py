@@ -515,7 +515,8 @@ class _Above:
         for row in [*(row for _, row in below), *first[:2]]:
             label, *cells = row or ['']
             numbers = {*map(_number, cells)}
-            of_others = COUNTED.search(label) or is_unit(label) or property_of(label)
+            of_time = unit_of(f'[{label}]', 'time')
+            of_others = COUNTED.search(label) or of_time or property_of(label)
             if len(row) == self.width > 2 and _kind(label) == 'x' and not of_others:
                 if (
                     all(_kind(cell) == 'n' for cell in cells)

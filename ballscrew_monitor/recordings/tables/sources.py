@@ -232,7 +232,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
         _check_columns(path, signals.frame.width)
-        frame = signals.frame.lazy()
+        frame, empty = signals.frame.lazy(), signals.empty_rows
         source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
         source = dataclasses.replace(
             source,
@@ -240,6 +240,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
             more_rows=signals.more_rows,
             is_grouped=kind in foreign.GROUPED,
             lengths=_lengths(signals.frame) if kind in foreign.GROUPED else {},
+            short=ShortRows(count=len(empty), first=empty[0]) if empty else ShortRows(),
         )
         texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
         cells = dict(zip(signals.frame.columns, source.names(), strict=True))

@@ -12,7 +12,13 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
-from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
+from ballscrew_monitor.recordings.tables.other_tables import (
+    FEW_HOLES,
+    other_table,
+    rows_above,
+    TAIL,
+    TAKE_OUT,
+)
 from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
@@ -468,7 +474,8 @@ class Times:
         few = self.group.holes <= FEW_HOLES * self._table.rows
         if self.group.is_motion and few and not self.group.hold:
             row = self._table.first_row + self._table.rows - len(self._tail)
-            if other := other_table(self._tail, row, self.gate.step):
+            other = rows_above(self.gate.runs, self.gate.step)
+            if other := other or other_table(self._tail, row, self.gate.step):
                 raise InputError(f'{where}: {other}: {TAKE_OUT}')
 
     def _is_wall(self) -> bool:

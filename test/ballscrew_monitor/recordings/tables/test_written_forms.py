@@ -13,6 +13,7 @@ import json
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -77,6 +78,7 @@ FORMS = {
     'ROS': (['stamp.sec', 'stamp.nanosec'], lambda t: [epoch(t), part(t) * 10**6]),
     'usec': (['timestamp', 'usec'], lambda t: [epoch(t), part(t) * 1000]),
     'clock and ms': (['Time', 'ms'], lambda t: [f'{moment(t):%H:%M:%S}', part(t)]),
+    'hundredths': (['Time'], lambda t: [f'{moment(t):%H:%M:%S}:{part(t) // 10:02d}']),
     'parts': (
         ['Hour', 'Minute', 'Second', 'Millisecond'],
         lambda t: [moment(t).hour, moment(t).minute, moment(t).second, part(t)],
@@ -223,6 +225,27 @@ def test_lists_that_may_be_rows_or_columns_are_refused(tmp_path, refused):
     square = [[0.0, 1.0, 2.0]] * 3
     path.write_text(json.dumps({'columns': ['t', 'x speed', 'x position'], 'data': square}))
     refused('square', source_of, path)
+
+
+@pytest.mark.parametrize('cut', [1, 12, 30])
+def test_a_last_record_that_is_cut_off_is_counted(cut, tmp_path, refused):
+    path = tmp_path / 'log.json'
+    whole = JSON['a line each']
+    path.write_text(f'{whole}\n{whole.splitlines()[-1][:cut]}')
+    made = guess(path)
+    assert f'1 row of {ROWS + 1} with fewer cells' in ' '.join(made.notes)
+    log = TableLog(path, make_map(made.content))
+    assert {*log.promised.values()} == {ROWS + 1}
+    path.write_text(f'{JSON["lists in lines"]}\n[2.4, 15')
+    refused('list_cut_off', source_of, path)
+
+
+@pytest.mark.parametrize('rate', [10, 24, 25, 30, 50, 60])
+def test_frames_of_a_second_are_named_as_what_they_may_be(rate, tmp_path, refused):
+    path = tmp_path / 'log.csv'
+    rows = [f'12:00:{at // rate:02d}:{at % rate:02d};{at % 9};{at % 7}' for at in range(10 * rate)]
+    path.write_text('\n'.join([f'Time;{NAMED[1]};{NAMED[2]}', *rows]) + '\n')
+    refused('frames', source_of, path)
 
 
 def test_structures_and_the_index_of_a_frame_are_columns(tmp_path):
