@@ -554,6 +554,8 @@ class _Guesser:
             times, numbers = values[rows], rows + self.first_row
             if len(rows) < 2:
                 return 'it holds fewer than two numbers beside those of the motion'
+            if not np.ptp(times):
+                return f'it is {times[0]:.12g} in all rows'
             gate = TimeGate(wall=one.column in self.timed)
             unit = self._unit_of_time(one, times)[0]
             gate.add(times * (SCALES[unit][0] if unit else 1.0), numbers)

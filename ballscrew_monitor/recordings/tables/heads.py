@@ -154,18 +154,23 @@ class Head:
         return _surplus(row, cells, len(self.names), self.separator)
 
 
-def are_other_names(cells: Sequence[str], names: Sequence[str]) -> bool:
+def are_other_names(
+    cells: Sequence[str], names: Sequence[str], *, is_remark: bool = False
+) -> bool:
     """
     Return True if cells of columns are names or units, and others than those of the head.
 
-    Words of which no two are alike, and none says that a number is missing, are names as well.
+    Words of which no two are alike, and none says that a number is missing, are names as well,
+    unless they are those of a remark.
 
     """
     words = [cell.strip(f'{COMMENT} []()') for cell in cells]
     texts = [word for word in words if word and not word[0].isdigit()]
     plain = {word.lower() for word in texts}
     are_names = len(plain) == len(texts) > 1 and not plain & NO_NUMBER
-    are_known = are_names or any(is_unit(one) or read_name(one).kind for one in texts)
+    are_known = (are_names and not is_remark) or any(
+        is_unit(one) or read_name(one).kind for one in texts
+    )
     if len(texts) < len(words) or not are_known:
         return False
     known = [

@@ -526,7 +526,9 @@ def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
     """Raise InputError for a comment of other names or units than those of the head."""
     for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
         cells = match[1].decode(errors='replace').strip().split(head.separator)
-        if len(cells) == len(head.names) > 1 and heads.are_other_names(cells, head.names):
+        if len(cells) == len(head.names) > 1 and heads.are_other_names(
+            cells, head.names, is_remark=True
+        ):
             raise InputError(
                 f'log {path}: row {row + content.count(LINE_FEED, 0, match.start())} names or '
                 f'measures its columns otherwise than the head, {listed(cells)}: split the log '

@@ -78,6 +78,10 @@ FORMS = {
     'ROS': (['stamp.sec', 'stamp.nanosec'], lambda t: [epoch(t), part(t) * 10**6]),
     'usec': (['timestamp', 'usec'], lambda t: [epoch(t), part(t) * 1000]),
     'clock and ms': (['Time', 'ms'], lambda t: [f'{moment(t):%H:%M:%S}', part(t)]),
+    'clock of half a day and ms': (
+        ['Time', 'Millisecond'],
+        lambda t: [f'{moment(t):%I:%M:%S %p}', part(t)],
+    ),
     'hundredths': (['Time'], lambda t: [f'{moment(t):%H:%M:%S}:{part(t) // 10:02d}']),
     'parts': (
         ['Hour', 'Minute', 'Second', 'Millisecond'],
@@ -89,6 +93,10 @@ FORMS = {
             *moment(t).timetuple()[:5],
             f'{moment(t).second + moment(t).microsecond / 1e6:.2f}',
         ],
+    ),
+    'short words': (
+        ['Year', 'Month', 'Day', 'Hr', 'Min', 'Sec', 'ms'],
+        lambda t: [*moment(t).timetuple()[:6], part(t)],
     ),
 }
 
@@ -289,6 +297,16 @@ def test_gzip_that_is_cut_off_or_holds_no_text_is_refused(tmp_path, refused):
     refused('cut_off', source_of, path)
     path.write_bytes(gzip.compress(json.dumps(RECORDS).encode()))
     refused('packed', source_of, path)
+
+
+@pytest.mark.parametrize('value', [0.0, 1.5, 1.79578e12, 1.7e9])
+@pytest.mark.parametrize('name', ['t', 'Time', 't [s]'])
+def test_a_time_that_is_the_same_in_all_rows_is_named_as_such(name, value, tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text(f'{name};{NAMED[1]}\n' + ''.join(f'{value:g};{v}\n' for v in SPEED))
+    made = guess(path)
+    assert made.content['time']['rate_Hz'] is None
+    assert f'column {name!r}: it is {value:.12g} in all rows' in ' '.join(made.unstated)
 
 
 @pytest.mark.parametrize(
