@@ -8,6 +8,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.amounts import leap_on
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
@@ -306,6 +307,22 @@ class Times:
                 f'log {self._table.path}: {short(name)} has no slope that is a speed: {error}: '
                 f'name a column of the speed, or {INSTEAD} where rows are even'
             ) from None
+
+    def check_ways(self, name: str, counted: Callable[[Array], Array]) -> None:
+        """Raise InputError if a position leaps on in motion, as where rows without times miss."""
+        rows = 0
+        for row, times, columns in self._spread_out([name]):
+            places = counted(columns[name])
+            if at := leap_on(places):
+                raise InputError(
+                    f'log {self._table.path}: {short(name)} goes on by '
+                    f'{places[at] - places[at - 1]:.4g} in row {row + at}, far more than beside '
+                    'it, as where rows are missing, and no time tells how many: split the log '
+                    'there'
+                )
+            rows += len(times)
+            if rows > SHOWING:
+                break
 
     def place(
         self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]

@@ -44,6 +44,7 @@ CELLS = {
     'unit, no blank': lambda text, unit: f'{text}{unit}',
     'wide': lambda text, unit: text.translate(WIDE),
     'minus behind': lambda text, unit: f'{text[1:]}-' if text[0] == '-' else text,
+    'sign behind': lambda text, unit: f'{text[1:]}-' if text[0] == '-' else f'{text}+',
     'brackets': lambda text, unit: f'({text[1:]})' if text[0] == '-' else text,
 }
 
