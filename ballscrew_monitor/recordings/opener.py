@@ -9,8 +9,8 @@ from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table, kin
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
 
-SIGNALS = (b'\xff\xfe', b'\xfe\xff', b'PK', b'MATLAB', b'\x89HDF', b'TDSm', b'MDF ')
-"""How files of signals and of wide letters begin."""
+SIGNALS = (b'PK', b'MATLAB', b'\x89HDF', b'TDSm', b'MDF ')
+"""How files of signals begin."""
 CONTROLS = set(range(9))
 """Bytes that no text holds."""
 
@@ -52,9 +52,13 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
 
 
 def _may_be_table(path: Path) -> bool:
-    """Return True if a file of any ending is a text, or one of signals by its first bytes."""
+    """Return True if a file of any ending is a text, packed or not, or one of signals."""
+    from ballscrew_monitor.recordings.tables.codings import GZIP, wide_coding
+
     if not path.is_file() or kind_of(path) == 'rosbag1':
         return False
     with path.open('rb') as stream:
         head = stream.read(512)
-    return head.startswith(SIGNALS) or not (head.startswith(b'\x89') or CONTROLS & set(head))
+    if head.startswith((*SIGNALS, GZIP)) or wide_coding(head):
+        return True
+    return not (head.startswith(b'\x89') or CONTROLS & set(head))

@@ -207,6 +207,19 @@ def turns_by_torque(torque: Array, speed: Array) -> bool:
     return least < -SAME_TURN * most and most > -SAME_TURN * least
 
 
+def leap_on(places: Array) -> int:
+    """Return the row to which a position [-] goes on far more than beside it, 0 for none."""
+    ways = np.diff(places)
+    amounts = np.abs(ways)
+    if len(ways) < MANY or not (amounts > 0.0).any():
+        return 0
+    usual = _usual(np.nan_to_num(amounts))
+    moving = np.sign(ways) * (amounts > FAST * usual)
+    same = (moving[1:-1] == moving[:-2]) | (moving[1:-1] == moving[2:])
+    leaps = np.flatnonzero(same & (amounts[1:-1] > JUMP * usual))
+    return int(leaps[0]) + 2 if len(leaps) else 0
+
+
 def fault_of_slope(places: Array, runs: int) -> str:
     """
     Return why positions [-] in rows at equal distances have no speed as slope, empty if they may.

@@ -76,7 +76,8 @@ def plain_columns(columns: Mapping[str, Sequence[str]]) -> dict[str, PlainColumn
     """
     Return the columns whose cells are to be made plain, by some of their cells.
 
-    Raises ValueError where cells are in several units, or in another than the name states.
+    Raises ValueError where cells are in several units, or in another than the name states, or end
+    with parts of a second that may be frames.
 
     """
     found = {name: _plain_column(name, _sample(cells)) for name, cells in columns.items()}
@@ -94,8 +95,8 @@ def _plain_column(name: str, cells: Sequence[str]) -> PlainColumn | None:
     if all(map(TYPED.fullmatch, cells)):
         return PlainColumn(name=name, make=lambda texts: texts.str.replace(r'^[^#]*#', ''))
     clocks = [match for cell in cells if (match := CLOCK.fullmatch(cell))]
-    if len(clocks) == len(cells) and max(int(match['part']) for match in clocks) >= FRAMES:
-        return PlainColumn(name=name, make=lambda texts: texts.str.replace(r':(\d\d)\s*$', '.$1'))
+    if len(clocks) == len(cells):
+        return _of_hundredths(name, cells, [int(match['part']) for match in clocks])
     amounts = [match for cell in cells if (match := AMOUNT.fullmatch(cell))]
     units = {match['unit'].strip() for match in amounts}
     if len(amounts) == len(cells) and all(map(is_unit, units)) and len(units) == 1:
@@ -108,6 +109,17 @@ def _plain_column(name: str, cells: Sequence[str]) -> PlainColumn | None:
             'them in one unit'
         )
     return None
+
+
+def _of_hundredths(name: str, cells: Sequence[str], parts: Sequence[int]) -> PlainColumn:
+    """Return a column of times by its cells and their last parts, two digits behind a colon."""
+    if max(parts) < FRAMES:
+        raise ValueError(
+            f'the cells of column {short(repr(name))}, such as {short(cells[-1])}, end with a '
+            'part behind a third colon that may be frames, hundredths or, behind days, seconds: '
+            'write hours:minutes:seconds with decimals'
+        )
+    return PlainColumn(name=name, make=lambda texts: texts.str.replace(r':(\d\d)\s*$', '.$1'))
 
 
 def _are_spans(name: str, cells: Sequence[str]) -> bool:

@@ -21,6 +21,7 @@ Rows = NDArray[np.bool_]
 SHORTEST = 3  # rows of a dropout
 MOST_LOST = 0.2  # of the rows
 SAME = 0.1  # of the jump by which the values before and after may differ
+USUAL = 0.9  # quantile of the changes from row to row, by which values go on meanwhile
 JUMP = 5.0  # times the largest other change from row to row
 
 
@@ -28,7 +29,8 @@ def dropped(values: Array) -> Rows:
     """
     Return in which rows values [-] stand still between two jumps from and to about the same value.
 
-    There are none if they stand still at different values, or for more than a part of all rows.
+    The values may go on meanwhile, as a position does. There are none if they stand still at
+    different values, or for more than a part of all rows.
 
     """
     lost = np.zeros(len(values), np.bool_)
@@ -41,7 +43,8 @@ def dropped(values: Array) -> Rows:
     first, last = ends[:-1], ends[1:]  # steps into and out of each value that stands
     jump = np.minimum(steps[first], steps[last])
     apart = np.abs(known[np.minimum(last + 1, len(known) - 1)] - known[first])
-    stands = (last - first >= SHORTEST) & (apart <= SAME * jump)
+    way = float(np.quantile(steps, USUAL)) * (last - first + 1)
+    stands = (last - first >= SHORTEST) & (apart <= np.maximum(SAME * jump, way))
     while stands.any():
         others = np.ones(len(steps), np.bool_)
         others[np.concatenate([first[stands], last[stands]])] = False

@@ -27,9 +27,11 @@ from ballscrew_monitor.recordings.tables.layouts import (
     Format,
     format_of,
     LONGEST_PERIOD,
+    OTHER_ROWS,
     RECORDER,
 )
 from ballscrew_monitor.recordings.tables.quantities import RATED
+from ballscrew_monitor.recordings.tables.unit_names import words_of
 import numpy as np
 import polars as pl
 from polars.exceptions import PolarsError
@@ -73,7 +75,7 @@ class Signals:
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
     to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
     reason why a part of the file is not among them, by its name, and `more_rows` the records there
-    of the same signals.
+    of the same signals; `empty_rows` are numbers of records without any.
 
     """
 
@@ -86,6 +88,7 @@ class Signals:
     unclear_period: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
+    empty_rows: Sequence[int] = ()
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -180,8 +183,13 @@ def _json(path: Path) -> Signals:
         more_rows = sum(_rows_alike(lists[chosen], lists[name]) for name in others)
     if not _are_all(dict, content):
         raise TypeError
-    frame = pl.from_dicts(content, infer_schema_length=None)
-    return Signals(frame=frame, left_out=left_out, more_rows=more_rows, factors=factors)
+    return Signals(
+        frame=pl.from_dicts(content, infer_schema_length=None),
+        left_out=left_out,
+        more_rows=more_rows,
+        empty_rows=[at + 1 for at, record in enumerate(content) if not record],
+        factors=factors,
+    )
 
 
 def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
@@ -195,13 +203,27 @@ def _period_beside(content: Mapping[str, Any], lists: Iterable[str]) -> tuple[fl
     stated = json_layouts.stated_periods(content)
     numbers = {key: one for key, one in content.items() if isinstance(one, int | float)}
     periods = stated | _periods(numbers)
-    told = ', '.join(f'{name} = {numbers[name]:g}' for name in periods)
-    if len(periods) == 1 and stated:
+    others = _of_other_rows(numbers)
+    told = ', '.join(f'{name} = {numbers[name]:g}' for name in [*periods, *others])
+    if others:
+        period = math.nan
+    elif len(periods) == 1 and stated:
         (period,) = stated.values()
         period = period if period <= LONGEST_PERIOD else math.nan
     else:
         period = _period_of_rows(periods, lists)
     return period, told if math.isnan(period) else ''
+
+
+def _of_other_rows(content: Mapping[str, Any]) -> list[str]:
+    """Return the names of numbers that make rows other than the samples of a period."""
+    return [
+        name
+        for name, number in content.items()
+        if OTHER_ROWS.search(' '.join(words_of(name)))
+        and np.asarray(number).dtype.kind in 'iuf'
+        and float(number) != 1.0
+    ]
 
 
 def _periods(numbers: Mapping[str, Any]) -> dict[str, float]:
@@ -258,9 +280,15 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     if not isinstance(cycle, int | float):
         raise Unreadable('CycleTimeMs of its Header is no number')
     start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
-    period = float(cycle) * 1e-3
-    frame = pl.DataFrame(held, strict=False)
-    return Signals(frame=frame, period=period, start=start, program=RECORDER)
+    others = _of_other_rows({name: one for name, one in header.items() if np.ndim(one) == 0})
+    unclear = [f'{name} = {header[name]:g}' for name in ('CycleTimeMs', *others) if others]
+    return Signals(
+        frame=pl.DataFrame(held, strict=False),
+        period=math.nan if others else float(cycle) * 1e-3,
+        unclear_period=', '.join(unclear),
+        start=start,
+        program=RECORDER,
+    )
 
 
 def _list_of(kind: type, values: Any) -> Any:
@@ -401,8 +429,9 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
         elif array.size > 1:
             left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
     scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
-    told = ', '.join(f'{name} = {float(content[name]):g}' for name in periods)
-    period = _period_of_rows(periods, held)
+    others = _of_other_rows(scalars)
+    told = ', '.join(f'{name} = {float(content[name]):g}' for name in [*periods, *others])
+    period = math.nan if others else _period_of_rows(periods, held)
     return Signals(
         frame=_side_by_side(held),
         period=period,

@@ -51,7 +51,13 @@ from ballscrew_monitor.recordings.tables.marks import (
     valid_cells,
 )
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
+from ballscrew_monitor.recordings.tables.other_tables import (
+    FEW_HOLES,
+    other_table,
+    rows_above,
+    TAIL,
+    TAKE_OUT,
+)
 from ballscrew_monitor.recordings.tables.own_times import are_pairs, is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
@@ -548,10 +554,15 @@ class _Guesser:
             times, numbers = values[rows], rows + self.first_row
             if len(rows) < 2:
                 return 'it holds fewer than two numbers beside those of the motion'
+            if not np.ptp(times):
+                return f'it is {times[0]:.12g} in all rows'
             gate = TimeGate(wall=one.column in self.timed)
             unit = self._unit_of_time(one, times)[0]
             gate.add(times * (SCALES[unit][0] if unit else 1.0), numbers)
             gate.finish()
+            if other := rows_above(gate.runs, gate.step):
+                column = short(repr(one.column))
+                raise InputError(f'log {self.path}: column {column}: {other}: {TAKE_OUT}')
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
 

@@ -154,18 +154,23 @@ class Head:
         return _surplus(row, cells, len(self.names), self.separator)
 
 
-def are_other_names(cells: Sequence[str], names: Sequence[str]) -> bool:
+def are_other_names(
+    cells: Sequence[str], names: Sequence[str], *, is_remark: bool = False
+) -> bool:
     """
     Return True if cells of columns are names or units, and others than those of the head.
 
-    Words of which no two are alike, and none says that a number is missing, are names as well.
+    Words of which no two are alike, and none says that a number is missing, are names as well,
+    unless they are those of a remark.
 
     """
     words = [cell.strip(f'{COMMENT} []()') for cell in cells]
     texts = [word for word in words if word and not word[0].isdigit()]
     plain = {word.lower() for word in texts}
     are_names = len(plain) == len(texts) > 1 and not plain & NO_NUMBER
-    are_known = are_names or any(is_unit(one) or read_name(one).kind for one in texts)
+    are_known = (are_names and not is_remark) or any(
+        is_unit(one) or read_name(one).kind for one in texts
+    )
     if len(texts) < len(words) or not are_known:
         return False
     known = [
@@ -515,7 +520,8 @@ class _Above:
         for row in [*(row for _, row in below), *first[:2]]:
             label, *cells = row or ['']
             numbers = {*map(_number, cells)}
-            of_others = COUNTED.search(label) or is_unit(label) or property_of(label)
+            of_time = unit_of(f'[{label}]', 'time')
+            of_others = COUNTED.search(label) or of_time or property_of(label)
             if len(row) == self.width > 2 and _kind(label) == 'x' and not of_others:
                 if (
                     all(_kind(cell) == 'n' for cell in cells)

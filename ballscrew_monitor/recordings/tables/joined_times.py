@@ -22,8 +22,8 @@ PARTS = {
     'year': 'year jahr',
     'month': 'month monat',
     'day': 'day tag',
-    'hour': 'hour hours stunde hh',
-    'minute': 'minute minutes',
+    'hour': 'hour hours hr hrs stunde hh',
+    'minute': 'minute minutes min mins',
     'second': 'second seconds sec secs sekunde',
     'millisecond': 'millisecond milliseconds milli millis millitm msec ms millisekunde',
     'microsecond': 'microsecond microseconds micros usec usecs us',
@@ -36,8 +36,9 @@ DIGITS = {'millisecond': 3, 'microsecond': 6, 'nanosecond': 9}
 MOST = {'month': 12, 'day': 31, 'hour': 23, 'minute': 59, 'second': 60}
 CLOCK, CALENDAR = ('hour', 'minute', 'second'), ('year', 'month', 'day')
 WHOLE = r'^\s*(\d+)(?:[.,]0*)?\s*$'
-SECONDS = r':\d\d\s*$|^\s*\d+(?:[.,]0*)?\s*$'
-"""Texts of whole numbers, and of times without parts of a second."""
+HALF_DAY = r'(?i)(\s*[ap]\.?\s?m\.?)\s*$'
+SECONDS = r'(?i):\d\d\s*(?:[ap]\.?\s?m\.?\s*)?$|^\s*\d+(?:[.,]0*)?\s*$'
+"""Texts of whole numbers, of AM and PM, and of times without parts of a second."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,9 +56,11 @@ class JoinedTime:
         plain = pl.col('moment' if 'moment' in texts else 'second').str.strip_chars()
         seconds = plain.str.replace(r'[.,]0*$', '') if sub else plain.str.replace(',', '.')
         if sub:
+            half_day = plain.str.extract(HALF_DAY).fill_null('')
+            seconds = seconds.str.replace(HALF_DAY, '')
             part = pl.col(sub).str.extract(WHOLE)
             seconds = pl.concat_str(seconds, pl.lit('.'), part.str.zfill(DIGITS[sub]))
-            seconds = pl.concat_str(seconds, pl.lit('0' * (9 - DIGITS[sub])))
+            seconds = pl.concat_str(seconds, pl.lit('0' * (9 - DIGITS[sub])), half_day)
         if 'hour' in texts:
             clock = [pl.col(part).str.extract(WHOLE).str.zfill(2) for part in CLOCK[:2]]
             padded = seconds.str.replace(r'^(\d)(\.|$)', '0$1$2')

@@ -31,7 +31,12 @@ Content = Any
 
 
 def parsed(text: bytes) -> Content:
-    """Return the content of a JSON text, or of one in each of its lines; raises ValueError."""
+    """
+    Return the content of a JSON text, or of one in each of its lines; raises ValueError.
+
+    A last record that is cut off is an empty one.
+
+    """
     try:
         return json.loads(text)
     except json.JSONDecodeError:
@@ -43,8 +48,9 @@ def parsed(text: bytes) -> Content:
         try:
             records.append(json.loads(line))
         except json.JSONDecodeError as error:
-            if number + 1 < len(lines):
+            if number + 1 < len(lines) or not isinstance(records[0], dict):
                 raise Unreadable(f'line {number + 1} is no JSON: {error.msg}') from None
+            records.append({})
     return records
 
 

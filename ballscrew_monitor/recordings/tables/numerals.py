@@ -4,7 +4,7 @@
 Numbers as programs write them beside the plain way, made plain.
 
 A spreadsheet keeps texts by ="1.5" or an apostrophe, Fortran has exponents with D, accountants
-write a minus behind a number or brackets around it, and Asian keyboards write wide digits.
+write a sign behind a number or brackets around it, and Asian keyboards write wide digits.
 
 """
 
@@ -20,11 +20,12 @@ STEPS = (
     (r"^\s*'\s*([-+\u2212\u2013]?\s*[.,]?\d)", '${1}'),
     (r'^\s*([-+\u2212\u2013]?\s*[\d.,]*\d[.,]?)[dD]([-+]?\d+)\s*$', '${1}e${2}'),
     (rf'^\s*({_DIGITS})\s*[-\u2212\u2013]\s*$', '-${1}'),
+    (rf'^\s*({_DIGITS})\s*\+\s*$', '${1}'),
     (rf'^\s*\(\s*({_DIGITS})\s*\)\s*$', '-${1}'),
 )
-"""What is replaced: the quotes of a formula, an apostrophe, a D, a minus behind, brackets."""
+"""What is replaced: the quotes of a formula, an apostrophe, a D, a sign behind, brackets."""
 _PYTHON = [(re.compile(pattern), re.sub(r'\$\{(\d)\}', r'\\\1', by)) for pattern, by in STEPS]
-_OTHER = rf"^\s*[='(]|\d[dD][-+]?\d+\s*$|\d[.,]?\s*[-\u2212\u2013]\s*$|[{WIDE[:10]}]"
+_OTHER = rf"^\s*[='(]|\d[dD][-+]?\d+\s*$|\d[.,]?\s*[-+\u2212\u2013]\s*$|[{WIDE[:10]}]"
 """What texts hold that are not plain; most hold none."""
 _TRANSLATED = str.maketrans(WIDE, NARROW)
 

@@ -1,14 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Rows below a log that are of another table: statistics, a spectrum, alarms.
+Rows below or above a log that are of another table: statistics, limits, a spectrum, alarms.
 
 Where no line names them, their times do not go on as those of the log do: they begin after a row
 without a time, or before the times above, and are further apart, or go far back at the end.
 
 """
 
+from collections.abc import Sequence
+
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.time_gate import Run
 import numpy as np
 
 TAIL = 4096  # rows at the end of a log that are looked at
@@ -17,7 +20,7 @@ OTHER = 5.0  # times the usual step, or its part, which is one of another table
 AGAIN = 5  # rows that begin again, at least, whose steps tell what they are
 FAR = 0.2  # of the time of a log, by which no row comes late
 LONG = 100.0  # times the usual step, after which a single row is not of the log
-STATISTICS = 12  # rows at the end, at most, that go back
+STATISTICS = 12  # rows at the end, at most, that go back, and as many before the first
 FEW_HOLES = 0.05  # of the rows that hold no sample: in a log with more, these part nothing
 TAKE_OUT = 'take them out if they are of another table, or split the log there'
 EVEN = 0.9, 2.0  # quantile of the steps of a log, and how many usual ones that is at most
@@ -47,6 +50,23 @@ def other_table(times: Array, row: int, step: float) -> str:
             words = f'{_rows(row + begin, row + len(times) - 1)} at the end'
             return f'{words}, from {part[0]:.6g} s on, do not go on from there, as statistics do'
     return ''
+
+
+def rows_above(runs: Sequence[Run], step: float) -> str:
+    """
+    Return which of the first rows of a log are of another table and why, empty for none.
+
+    They are a run of few rows, which are further apart than the usual step [s] of the log.
+
+    """
+    if len(runs) < 2 or not 1 < runs[0].rows <= STATISTICS or runs[1].rows < FEWEST:
+        return ''
+    first = runs[0]
+    apart = (first.end - first.begin) / (first.rows - 1)
+    if apart <= step * OTHER:
+        return ''
+    words = f'{_rows(first.row, first.last)} above the log are {apart:.3g} s apart'
+    return f'{words}, not as those below, which are {step:.3g} s apart'
 
 
 def _goes_back(before: Array, part: Array, step: float) -> bool:

@@ -341,11 +341,13 @@ def _look_at_slopes(mapping: TableMap, turns: Mapping[str, float], times: Sequen
     """Take the rows of positions that tell a speed as even where they are; may ask."""
     for axis in mapping.axes:
         name = _motion(axis).name
-        if 'speed' in axis.columns or mapping.time is None:
+        if 'speed' in axis.columns:
             continue
         counted = Turns(turns[name]).counted if name in turns else np.asarray
         group = next(one for one in times if name in one.group.columns)
-        if not group.group.hold:
+        if mapping.time is None:
+            group.check_ways(name, counted)
+        elif not group.group.hold:
             group.look_at_slope(name, counted)
 
 

@@ -232,7 +232,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
         _check_columns(path, signals.frame.width)
-        frame = signals.frame.lazy()
+        frame, empty = signals.frame.lazy(), signals.empty_rows
         source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
         source = dataclasses.replace(
             source,
@@ -240,6 +240,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
             more_rows=signals.more_rows,
             is_grouped=kind in foreign.GROUPED,
             lengths=_lengths(signals.frame) if kind in foreign.GROUPED else {},
+            short=ShortRows(count=len(empty), first=empty[0]) if empty else ShortRows(),
         )
         texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
         cells = dict(zip(signals.frame.columns, source.names(), strict=True))
@@ -526,7 +527,9 @@ def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
     """Raise InputError for a comment of other names or units than those of the head."""
     for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
         cells = match[1].decode(errors='replace').strip().split(head.separator)
-        if len(cells) == len(head.names) > 1 and heads.are_other_names(cells, head.names):
+        if len(cells) == len(head.names) > 1 and heads.are_other_names(
+            cells, head.names, is_remark=True
+        ):
             raise InputError(
                 f'log {path}: row {row + content.count(LINE_FEED, 0, match.start())} names or '
                 f'measures its columns otherwise than the head, {listed(cells)}: split the log '

@@ -8,11 +8,18 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.amounts import leap_on
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
-from ballscrew_monitor.recordings.tables.other_tables import FEW_HOLES, other_table, TAIL, TAKE_OUT
+from ballscrew_monitor.recordings.tables.other_tables import (
+    FEW_HOLES,
+    other_table,
+    rows_above,
+    TAIL,
+    TAKE_OUT,
+)
 from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
@@ -301,6 +308,22 @@ class Times:
                 f'name a column of the speed, or {INSTEAD} where rows are even'
             ) from None
 
+    def check_ways(self, name: str, counted: Callable[[Array], Array]) -> None:
+        """Raise InputError if a position leaps on in motion, as where rows without times miss."""
+        rows = 0
+        for row, times, columns in self._spread_out([name]):
+            places = counted(columns[name])
+            if at := leap_on(places):
+                raise InputError(
+                    f'log {self._table.path}: {short(name)} goes on by '
+                    f'{places[at] - places[at - 1]:.4g} in row {row + at}, far more than beside '
+                    'it, as where rows are missing, and no time tells how many: split the log '
+                    'there'
+                )
+            rows += len(times)
+            if rows > SHOWING:
+                break
+
     def place(
         self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]
     ) -> None:
@@ -468,7 +491,8 @@ class Times:
         few = self.group.holes <= FEW_HOLES * self._table.rows
         if self.group.is_motion and few and not self.group.hold:
             row = self._table.first_row + self._table.rows - len(self._tail)
-            if other := other_table(self._tail, row, self.gate.step):
+            other = rows_above(self.gate.runs, self.gate.step)
+            if other := other or other_table(self._tail, row, self.gate.step):
                 raise InputError(f'{where}: {other}: {TAKE_OUT}')
 
     def _is_wall(self) -> bool:

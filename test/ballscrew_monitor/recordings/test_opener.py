@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Any log as a bag, and what is said of those that are none."""
 
+import gzip
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
@@ -42,6 +43,29 @@ def test_a_table_needs_a_map_and_a_bag_none(short_bag, tmp_path):
     assert bag.path == table
     assert len(list(bag.messages())) == 4
     assert sorted(path.name for path in tmp_path.iterdir()) == ['log.csv', 'map.yaml']
+
+
+@pytest.mark.parametrize('name', ['log.csv.gz', 'log.txt', 'LOG'])
+@pytest.mark.parametrize(
+    'coded',
+    [
+        lambda text: gzip.compress(text.encode()),
+        lambda text: gzip.compress(text.encode('utf-16')),
+        *(
+            lambda text, coding=coding: text.encode(coding)
+            for coding in ('utf-8', 'utf-16', 'utf-16-le', 'utf-16-be', 'utf-32', 'utf-32-be')
+        ),
+    ],
+)
+def test_a_table_is_one_in_whatever_coding_and_by_any_name(name, coded, tmp_path):
+    table, mapping = tmp_path / name, tmp_path / 'map.yaml'
+    table.write_bytes(coded('t,v,f\n' + ''.join(f'{at / 10},100,1\n' for at in range(20))))
+    mapping.write_text(
+        'time: {column: t, unit: s, epoch: 2000-01-01}\n'
+        'axes: {x: {lead_mm: 10.0, speed: {column: v, unit: mm/s}, '
+        'load: {column: f, unit: N}}}\n'
+    )
+    assert len(list(opened_log(table, mapping=mapping).messages())) == 40
 
 
 def test_no_log_at_all(tmp_path, says):

@@ -28,6 +28,25 @@ def test_a_value_between_two_jumps_is_lost(value, noise, spans):
     np.testing.assert_array_equal(dropped(speed), lost)
 
 
+@pytest.mark.parametrize('value', [-1.0, 999.0, 0.0])
+@pytest.mark.parametrize('rows', [3, 20, 60, 120])
+@pytest.mark.parametrize('begin', [60, 200, 300, 700, 900])
+def test_a_position_that_goes_on_while_it_is_lost_is_lost(value, rows, begin):
+    place = 120.0 + np.cumsum(SPEED) / 100.0
+    lost = np.zeros(len(TIME), bool)
+    lost[begin : begin + rows] = True
+    np.testing.assert_array_equal(dropped(np.where(lost, value, place)), lost)
+
+
+@pytest.mark.parametrize('place', [0.0, -300.0, 1e4])
+@pytest.mark.parametrize('at', [[30], [570], [575, 590]])
+def test_a_position_that_is_set_at_rest_is_not_lost(place, at):
+    values = 120.0 + np.cumsum(SPEED) / 100.0
+    for number, begin in enumerate(at):
+        values[begin:] += place * (1 + number) - values[begin]
+    assert not dropped(values).any()
+
+
 SQUARE = np.where(SPEED > 0.0, 75.0, np.where(SPEED < 0.0, -40.0, 0.0))
 MOTIONS = {
     'with ramps': SPEED,

@@ -5,6 +5,7 @@
 import contextlib
 
 from ballscrew_monitor.recordings.tables import sources
+from ballscrew_monitor.recordings.tables.amounts import leap_on
 from ballscrew_monitor.recordings.tables.estimates import way_per_speed
 from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -191,3 +192,48 @@ def test_a_speed_of_rounded_stamps_makes_its_position(rate):
     stamps = np.round(times / quantum) * quantum
     way = way_per_speed((stamps, place_at(times)), (stamps, speed_at(times)))
     assert way == pytest.approx(1.0, rel=0.02)
+
+
+@given(
+    rate=st.floats(20.0, 2000.0),
+    begin=st.floats(0.0, 11.9),
+    missing=st.floats(0.0, 5.0),
+    scale=st.sampled_from([1.0, -1e-3, 2.0]),
+)
+@example(rate=100.0, begin=5.0, missing=1.0, scale=1.0)
+@settings(deadline=None)
+def test_rows_that_miss_in_motion_are_a_leap_and_a_pause_is_none(rate, begin, missing, scale):
+    times = rows_of(rate)
+    left_out = (times >= begin) & (times < begin + missing)
+    kept = times[~left_out]
+    at = leap_on(scale * place_at(kept))
+    assert not at or left_out[round(kept[at] * rate) - 1]
+    gone = np.abs(np.diff(place_at(np.array([begin, begin + missing])))).max()
+    ran = np.abs(speed_at(np.array([begin - 1.5 / rate, begin + missing + 1.5 / rate])))
+    if gone > 25.0 * FASTEST / rate and ran.min() > 0.5 * FASTEST and begin + missing < 5.0:
+        assert at
+
+
+@pytest.mark.parametrize('place', [0.0, 1e4, -300.0])
+@pytest.mark.parametrize('at', [20, 570, 590, 1170])
+def test_a_position_that_is_set_at_rest_is_no_leap(place, at):
+    times = rows_of(100.0)
+    assert not leap_on(np.where(np.arange(len(times)) < at, place_at(times), place))
+
+
+def test_rows_that_miss_in_a_log_without_times_are_named(tmp_path, refused):
+    times = rows_of(100.0)
+    lines = [f'{place_at(times)[at]:.4f};1' for at in (*range(300), *range(360, 1200))]
+    text = '\n'.join(['Sample rate: 100 Hz', 'x position [mm];x force [N]', *lines])
+    (tmp_path / 'log.csv').write_text(text + '\n')
+    content = {
+        'time': {'rate_Hz': 100.0, 'epoch': '2000-01-01T00:00:00Z'},
+        'axes': {
+            'x': {
+                'lead_mm': 10.0,
+                'position': {'column': 'x position [mm]', 'unit': 'mm'},
+                'load': {'column': 'x force [N]', 'unit': 'N', 'magnitude': False},
+            }
+        },
+    }
+    refused('leap', read_series, tmp_path / 'log.csv', make_map(content))

@@ -46,6 +46,39 @@ def test_a_load_of_a_data_recorder_is_a_torque_in_per_cent(tmp_path):
     assert axis['torque_rated_Nm'] is None
 
 
+def write_lists(path, beside):
+    path.write_text(json.dumps(beside | {'x position [mm]': [*PLACE], 'x speed [mm/s]': [*SPEED]}))
+
+
+def write_arrays(path, beside):
+    scipy.io.savemat(path, beside | {'x_pos_mm': PLACE, 'x_vel_mm_s': SPEED})
+
+
+def write_recorder(path, beside):
+    sinumerik_json(path)
+    content = json.loads(path.read_text())
+    content['Header'] |= beside
+    path.write_text(json.dumps(content))
+
+
+@pytest.mark.parametrize('number', [1, 5])
+@pytest.mark.parametrize('word', ['Decimation', 'downsampling', 'record_every', 'Averaging'])
+@pytest.mark.parametrize(
+    ('ending', 'write', 'period'),
+    [
+        ('json', write_lists, {'dt': STEP}),
+        ('mat', write_arrays, {'dt': STEP}),
+        ('json', write_recorder, {}),
+    ],
+)
+def test_a_period_beside_a_decimation_is_asked_for(ending, write, period, word, number, tmp_path):
+    path = tmp_path / f'log.{ending}'
+    write(path, period | {word: number})
+    made = guess(path)
+    assert (made.content['time']['rate_Hz'] is None) is (number != 1)
+    assert (f'{word} = {number}' in ' '.join(made.unstated)) is (number != 1)
+
+
 @pytest.mark.parametrize(
     ('key', 'change'),
     [

@@ -187,6 +187,16 @@ def test_a_row_that_scales_the_cells_is_known(text, factors):
     assert head_of(text + 9 * '1;2;3\n').factors == factors
 
 
+@pytest.mark.parametrize('units', ['', 's;mm/s;N\n'])
+@pytest.mark.parametrize('row', ['0.1;0.1', '0,1;0,1', '1e-1;1e-1'])
+@pytest.mark.parametrize('label', ['k', 'K', 'm', 'a', 'N', 'C', 'A', 's', 'ms', 'd'])
+def test_a_letter_before_numbers_names_factors_unless_it_is_a_unit_of_a_time(label, row, units):
+    text = f't;v;F\n{units}{label};{row}\n'
+    numbers = ''.join(f'0.{at}00;2;3\n' for at in range(9))
+    factors = '' if label in ('s', 'ms', 'd') else f'{label} {row.replace(";", " ")}'
+    assert head_of(text + numbers).factors == factors
+
+
 BARE = ['1,0.5,1', '1;0,5;2,0', '1e-3;0.5;1', '1.0;1;1', '0.001;2;1']
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rows below a log that are of another table are no samples of it."""
+"""Rows below or above a log that are of another table are no samples of it."""
 
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -71,6 +71,37 @@ def test_a_table_below_a_log_is_named_and_never_read(tmp_path, separator, head, 
     path = log_of(tmp_path / 'log.csv', columns, BELOW[below](columns), separator, head)
     with pytest.raises(InputError, match=r'log\.csv: (column|row).*split the log there'):
         read(path)
+
+
+def limits_of(columns):
+    """Return rows such as a control writes above its log: the least and most of each column."""
+    return [[f'{of(one):.6g}' for one in columns] for of in (np.min, np.max)]
+
+
+@pytest.mark.parametrize('separator', SEPARATORS)
+@pytest.mark.parametrize(
+    'rows', [limits_of, lambda columns: [['0', '-500', '-5e3'], ['20', '500', '5e3']]]
+)
+@pytest.mark.parametrize('rate', [50.0, 1000.0])
+def test_rows_of_limits_above_a_log_are_named_and_never_read(tmp_path, separator, rows, rate):
+    columns = columns_of(rate, 600)
+    path = log_of(tmp_path / 'log.csv', columns, [], separator, 'none')
+    names, *cells = path.read_text().splitlines()
+    above = map(SEPARATORS[separator].join, rows(columns))
+    path.write_text('\n'.join([names, *above, *cells]) + '\n')
+    with pytest.raises(InputError, match=r'log\.csv: column .t \[s\].: rows 2 to 3 above the log'):
+        read(path)
+
+
+@pytest.mark.parametrize('rows', [2, 5, 12])
+@pytest.mark.parametrize('step', [0.5, 1.0, 4.0])
+def test_few_rows_of_a_run_before_the_first_are_of_the_log(tmp_path, rows, step):
+    columns = columns_of(100.0, 600)
+    path = log_of(tmp_path / 'log.csv', columns, [], ';', 'none')
+    names, *cells = path.read_text().splitlines()
+    above = [f'{7.0 + at * step / 100.0:g};0;0' for at in range(rows)]
+    path.write_text('\n'.join([names, *above, *cells]) + '\n')
+    assert read(path).count == 600 + rows
 
 
 @pytest.mark.parametrize('head', ['none', 'blank', 'title'])

@@ -106,6 +106,19 @@ def test_other_names_or_units_below_the_head_are_refused(below, tmp_path, refuse
         assert np.nansum(open_table(path, column_names(path)).head(99)['v [mm/s]']) == 36
 
 
+@pytest.mark.parametrize('sign', [';', ',', '\t'])
+@pytest.mark.parametrize(
+    'words',
+    [['tool change', 'by hand'], ['stop', 'start', 'stop'], ['one', 'two', 'three', 'four']],
+)
+def test_a_remark_of_as_many_words_as_columns_is_none_of_names(words, sign, tmp_path):
+    names = [f'v{at} [mm/s]' for at in range(len(words))]
+    rows = 9 * (sign.join('1' for _ in words) + '\n')
+    remark = f'# {sign.join(words)}\n'
+    path = text_log(tmp_path, f'{sign.join(names)}\n{rows}{remark}{rows}')
+    assert np.nansum(open_table(path, names).head(99)[names[0]]) == 18
+
+
 def test_a_row_of_fewer_cells_is_left_out_and_counted(tmp_path, says):
     """Which of its cells is missing is not known: none of them is read, however others are."""
     table = open_table(text_log(tmp_path, 't;v;w\n' + 30 * '1;2;x\n' + '1;3\n\n'), ['t', 'v'])

@@ -13,6 +13,7 @@ import json
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -43,6 +44,7 @@ CELLS = {
     'unit, no blank': lambda text, unit: f'{text}{unit}',
     'wide': lambda text, unit: text.translate(WIDE),
     'minus behind': lambda text, unit: f'{text[1:]}-' if text[0] == '-' else text,
+    'sign behind': lambda text, unit: f'{text[1:]}-' if text[0] == '-' else f'{text}+',
     'brackets': lambda text, unit: f'({text[1:]})' if text[0] == '-' else text,
 }
 
@@ -77,6 +79,11 @@ FORMS = {
     'ROS': (['stamp.sec', 'stamp.nanosec'], lambda t: [epoch(t), part(t) * 10**6]),
     'usec': (['timestamp', 'usec'], lambda t: [epoch(t), part(t) * 1000]),
     'clock and ms': (['Time', 'ms'], lambda t: [f'{moment(t):%H:%M:%S}', part(t)]),
+    'clock of half a day and ms': (
+        ['Time', 'Millisecond'],
+        lambda t: [f'{moment(t):%I:%M:%S %p}', part(t)],
+    ),
+    'hundredths': (['Time'], lambda t: [f'{moment(t):%H:%M:%S}:{part(t) // 10:02d}']),
     'parts': (
         ['Hour', 'Minute', 'Second', 'Millisecond'],
         lambda t: [moment(t).hour, moment(t).minute, moment(t).second, part(t)],
@@ -87,6 +94,10 @@ FORMS = {
             *moment(t).timetuple()[:5],
             f'{moment(t).second + moment(t).microsecond / 1e6:.2f}',
         ],
+    ),
+    'short words': (
+        ['Year', 'Month', 'Day', 'Hr', 'Min', 'Sec', 'ms'],
+        lambda t: [*moment(t).timetuple()[:6], part(t)],
     ),
 }
 
@@ -225,6 +236,27 @@ def test_lists_that_may_be_rows_or_columns_are_refused(tmp_path, refused):
     refused('square', source_of, path)
 
 
+@pytest.mark.parametrize('cut', [1, 12, 30])
+def test_a_last_record_that_is_cut_off_is_counted(cut, tmp_path, refused):
+    path = tmp_path / 'log.json'
+    whole = JSON['a line each']
+    path.write_text(f'{whole}\n{whole.splitlines()[-1][:cut]}')
+    made = guess(path)
+    assert f'1 row of {ROWS + 1} with fewer cells' in ' '.join(made.notes)
+    log = TableLog(path, make_map(made.content))
+    assert {*log.promised.values()} == {ROWS + 1}
+    path.write_text(f'{JSON["lists in lines"]}\n[2.4, 15')
+    refused('list_cut_off', source_of, path)
+
+
+@pytest.mark.parametrize('rate', [10, 24, 25, 30, 50, 60])
+def test_frames_of_a_second_are_named_as_what_they_may_be(rate, tmp_path, refused):
+    path = tmp_path / 'log.csv'
+    rows = [f'12:00:{at // rate:02d}:{at % rate:02d};{at % 9};{at % 7}' for at in range(10 * rate)]
+    path.write_text('\n'.join([f'Time;{NAMED[1]};{NAMED[2]}', *rows]) + '\n')
+    refused('frames', source_of, path)
+
+
 def test_structures_and_the_index_of_a_frame_are_columns(tmp_path):
     path = tmp_path / 'log.parquet'
     motion = [{'position_mm': p, 'speed_mm_s': v, 'force_N': f} for p, v, f in VALUES]
@@ -266,6 +298,16 @@ def test_gzip_that_is_cut_off_or_holds_no_text_is_refused(tmp_path, refused):
     refused('cut_off', source_of, path)
     path.write_bytes(gzip.compress(json.dumps(RECORDS).encode()))
     refused('packed', source_of, path)
+
+
+@pytest.mark.parametrize('value', [0.0, 1.5, 1.79578e12, 1.7e9])
+@pytest.mark.parametrize('name', ['t', 'Time', 't [s]'])
+def test_a_time_that_is_the_same_in_all_rows_is_named_as_such(name, value, tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text(f'{name};{NAMED[1]}\n' + ''.join(f'{value:g};{v}\n' for v in SPEED))
+    made = guess(path)
+    assert made.content['time']['rate_Hz'] is None
+    assert f'column {name!r}: it is {value:.12g} in all rows' in ' '.join(made.unstated)
 
 
 @pytest.mark.parametrize(
