@@ -92,23 +92,39 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
 
 
 def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, screw, oil):
-    """An onset half of the deviation later and sooner, behind the heating of the inlet."""
+    """
+    An onset half of the deviation later and sooner, behind the heating of the inlet.
+
+    Where contacts are nearly alike, another one may be the worst if all begin later.
+
+    """
     arm, law = no_slip_rates(screw).entrainment, Contacts.of(screw).law
-    for i, j, k in np.argwhere(~data.mask)[::11]:
-        nut, side = divmod(int(data.worst_contact[i, j, k]), len(SIDES))
-        force = float(normal_force(screw, nut_forces(float(data.load[j]), screw.preload)[nut]))
-        heat = float(data.temperature[k])
-        log_speed = data.speed_coordinate[i] + data.log_onset[j, k]
-        speed = arm * np.exp(log_speed)
-        inlet = float(inlet_speed(screw, oil, SIDES[side], force, speed, heat))
-        place, fluid = (SIDES[side], screw_contact(screw, SIDES[side])), oil_at(oil, heat)
-        condition = Condition(load=force, entrainment_speed=inlet)
-        later, sooner = (
-            law.shifted(half).contact(*place, condition, fluid, oil.film_floor)
-            for half in (0.5, -0.5)
+
+    def worst(speed, load, heat, half):
+        forces = [float(normal_force(screw, force)) for force in nut_forces(load, screw.preload)]
+        shifted, fluid = law.shifted(half), oil_at(oil, heat)
+        return max(
+            shifted.contact(
+                side,
+                screw_contact(screw, side),
+                Condition(
+                    load=force,
+                    entrainment_speed=float(inlet_speed(screw, oil, side, force, speed, heat)),
+                ),
+                fluid,
+                oil.film_floor,
+            ).rcs
+            for force in forces
+            for side in SIDES
+            if force > 0.0
         )
+
+    for i, j, k in np.argwhere(~data.mask)[::11]:
+        speed = arm * np.exp(data.speed_coordinate[i] + data.log_onset[j, k])
+        place = speed, float(data.load[j]), float(data.temperature[k])
+        difference = worst(*place, 0.5) - worst(*place, -0.5)
         deviation = data.deviations['rcs'][i, j, k]
-        assert deviation == pytest.approx(later.rcs - sooner.rcs, rel=1e-6, abs=10 * NOTHING)
+        assert deviation == pytest.approx(difference, rel=1e-6, abs=10 * NOTHING)
 
 
 def test_rcs_at_the_origin_of_the_speed_is_one_percent(data):
