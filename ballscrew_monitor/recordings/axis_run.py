@@ -108,8 +108,9 @@ class AxisRun:
             some_events = events[begin:end]
             if begin in begins:
                 self._begin_run(some_events[:1])
-            elif begin in back:
-                self._end_run()
+            elif begin in back:  # which the judge sees itself
+                self._runs.append(self._run())
+                self._begun, self._span = self.axis.monitor.memory, [0, 0]
             for part in self._take(some_events, states=states):
                 yield part if isinstance(part, AxisRows) else (begin + part[0], part[1])
 
@@ -125,11 +126,6 @@ class AxisRun:
             monitor.ending = RUN_ENDED
             self._ended = out_of_zone_message(monitor, shelved=False)
             self._note(int(monitor.memory.event_stamp))
-
-    def _end_run(self) -> None:
-        """Let a run end where the stamps of the speed begin again, which the judge sees itself."""
-        self._runs.append(self._run())
-        self._begun, self._span = self.axis.monitor.memory, [0, 0]
 
     def _set_back(self, events: Events) -> Iterator[int]:
         """Yield the places of samples of the speed at which a clock was set back."""

@@ -90,7 +90,10 @@ class Bag:
         if not any(info.count for info in self.topics.values()):
             reason = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {reason}')
-        self._check_encodings()
+        held = [(name, info) for name, info in sorted(self.topics.items()) if info.count]
+        if all(info.encoding not in ('cdr', '') for _, info in held):
+            name, info = held[0]
+            raise InputError(f'bag {self.path}: topic {name} {other_encoding(info.encoding)}')
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
         self.storages, disbelief = with_believed_log_times(self.path, self.storages)
@@ -194,13 +197,6 @@ class Bag:
         if kind == 'sqlite3':
             return SqliteStorage(file)
         return McapStorage(file, salvage=self._salvage)
-
-    def _check_encodings(self) -> None:
-        """Raise InputError if no topic holds messages as ROS 2 encodes them."""
-        held = [(name, info) for name, info in sorted(self.topics.items()) if info.count]
-        if held and all(info.encoding not in ('cdr', '') for _, info in held):
-            name, info = held[0]
-            raise InputError(f'bag {self.path}: topic {name} {other_encoding(info.encoding)}')
 
     def _compare(self, stated: Mapping[str, int]) -> None:
         """Note of which topics the files hold another number of messages than is stated."""

@@ -88,19 +88,15 @@ def read_summary(stream: BinaryIO) -> Summary:
     summary = reader.get_summary()
     if summary is None:
         raise McapError('it has no summary')
-    if summary.statistics is None or _leaves_out_channels(summary):
+    statistics = summary.statistics
+    if (
+        statistics is None
+        or (statistics.message_count and statistics.channel_count and not summary.channels)
+        or (statistics.schema_count and not summary.schemas)
+    ):
         raise NoSummary('its summary tells nothing of its messages')
     _check(summary, whole)
     return summary
-
-
-def _leaves_out_channels(summary: Summary) -> bool:
-    """Return True if messages are counted but channels or schemas are not repeated."""
-    statistics = summary.statistics
-    assert statistics is not None
-    has_none = statistics.message_count and statistics.channel_count and not summary.channels
-    has_schemas = bool(summary.schemas) or not statistics.schema_count
-    return bool(has_none) or not has_schemas
 
 
 def _check(summary: Summary, size: int) -> None:

@@ -112,12 +112,16 @@ def _objection(
     if message.events_version != EVENTS_VERSION:
         return f'its events are of version {message.events_version}, known is {EVENTS_VERSION}'
     asked = parameters.with_types(values, bag.types)
+    inputs = {source.name.lower(): source for source in Source}
     for axis in values['axes']:
         if axis not in recorded['axes']:
             return f'the node had no axis {axis}'
         for name in ('tick_period', *(f'{axis}.{leaf}' for leaf in READING)):
-            own, other = (_comparable(name, one) for one in (recorded, asked))
-            if own != other and not _is_unused(name, axis, asked):
+            own, other = recorded[name], asked[name]
+            if name.endswith('.topic'):
+                own, other = (one and parameters.absolute(one) for one in (own, other))
+            source = inputs.get(name.removeprefix(f'{axis}.').partition('.')[0])
+            if own != other and (source is None or parameters.is_configured(axis, asked, source)):
                 return f'{name} was {own!r} and {other!r} is asked for, which reads other numbers'
         surface = [f'{axis}.{leaf}' for leaf in ('surface', 'screw', 'oil')]
         if any(values[name] != recorded[name] for name in surface) and (
@@ -125,18 +129,6 @@ def _objection(
         ):
             return f'axis {axis} had a screw of another lead'
     return ''
-
-
-def _comparable(name: str, values: Mapping[str, Any]) -> Any:
-    value = values[name]
-    return parameters.absolute(value) if name.endswith('.topic') and value else value
-
-
-def _is_unused(name: str, axis: str, values: Mapping[str, Any]) -> bool:
-    """Return True for a parameter of an input that the axis does not have now."""
-    inputs = {source.name.lower(): source for source in Source}
-    source = inputs.get(name.removeprefix(f'{axis}.').partition('.')[0])
-    return source is not None and not parameters.is_configured(axis, values, source)
 
 
 def _first(bag: Bag) -> tuple[EventMessage, dict[str, Snapshot]]:

@@ -51,7 +51,10 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
         raise of_ros1(file)
     if kind in OTHERS:
         raise InputError(OTHERS[kind].format(file=file))
-    target = _target(file)
+    target = file.with_name(file.name.removesuffix(ACTIVE))
+    if not file.name.endswith(ACTIVE):
+        name = f'{file.name.removesuffix(SUFFIX)}_recovered'
+        target = file.with_name(name) / f'{name}{SUFFIX}'
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
     topics, lost = _topics(file)
@@ -74,13 +77,6 @@ def _unfinished(folder: Path) -> Path:
     if len(files) != 1:
         raise InputError(f'{folder} holds {len(files)} unfinished recordings, it must be one')
     return files[0]
-
-
-def _target(file: Path) -> Path:
-    if file.name.endswith(ACTIVE):
-        return file.with_name(file.name.removesuffix(ACTIVE))
-    name = f'{file.name.removesuffix(SUFFIX)}_recovered'
-    return file.with_name(name) / f'{name}{SUFFIX}'
 
 
 def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:

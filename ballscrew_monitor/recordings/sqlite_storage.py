@@ -52,7 +52,9 @@ class SqliteStorage(Storage):
     def __init__(self, file: Path) -> None:
         """Read the topics; raises InputError if the file is damaged."""
         self._source, remarks = file, list[str]()
-        if journals := _journals(file):
+        place = file.resolve()  # beside which SQLite puts its journals
+        beside = [place.with_name(place.name + ending) for ending in (LOG, ROLLBACK)]
+        if journals := [path for path in beside if size_of(path)]:
             self._source, remarks = _merged(file, journals, scratch_folder(self))
         super().__init__(file)
         for remark in remarks:
@@ -121,12 +123,6 @@ def _damaged(file: Path, error: BaseException) -> InputError:
         f'bag {file} is truncated or damaged, it must be a complete sqlite3 file of rosbag2 '
         f'({reason}), sqlite3 {file} .recover prints what is whole as SQL for a new file'
     )
-
-
-def _journals(file: Path) -> list[Path]:
-    place = file.resolve()  # where SQLite puts them
-    beside = [place.with_name(place.name + ending) for ending in (LOG, ROLLBACK)]
-    return [path for path in beside if size_of(path)]
 
 
 def _merged(file: Path, journals: list[Path], folder: Path) -> tuple[Path, list[str]]:

@@ -68,22 +68,17 @@ def is_one_sided(values: Array, speed: Array) -> bool:
     moving = known & (amounts > BARELY * _usual(amounts))
     moving = moving if moving.any() else known
     side = np.sign(values[moving].sum()) or 1.0
-    shares = [
-        _share_against(side, values[moving & way]) for way in (known, speed > 0.0, speed < 0.0)
-    ]
-    return bool(moving.any()) and max(shares) <= BARELY
+    ways = [values[moving & way] for way in (known, speed > 0.0, speed < 0.0)]
+    against = [float(np.maximum(-side * way, 0.0).sum()) for way in ways]
+    totals = [float(np.abs(way).sum()) for way in ways]
+    few = all(part <= BARELY * total for part, total in zip(against, totals, strict=True))
+    return bool(moving.any()) and few
 
 
 def _usual(amounts: Array) -> float:
     """Return the largest amount but for the few of jumps, 0 if all are."""
     amounts = amounts[amounts > 0.0]
     return float(np.quantile(amounts, USUAL)) if len(amounts) else 0.0
-
-
-def _share_against(side: float, values: Array) -> float:
-    """Return the share that those of the other sign than a side have in amounts of values [-]."""
-    total = float(np.abs(values).sum())
-    return float(np.maximum(-side * values, 0.0).sum()) / total if total else 0.0
 
 
 def reverses(ways: Array) -> bool:

@@ -9,23 +9,22 @@ decides; a cell of another unit behind it is no number.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-import dataclasses
 import re
 from typing import Any
 
+from ballscrew_monitor.recordings.tables.cells import Read, TypesBut
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
-    converted_unit,
     is_unit,
+    unit_and_scale,
     unit_of,
 )
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 
-Read = Callable[[list[str], Mapping[str, Any]], Iterator[pl.DataFrame]]
-Plain = Callable[[pl.Series], pl.Series]
-"""Makes cells of a column plain ones."""
+PlainColumn = tuple[str, Callable[[pl.Series], pl.Series]]
+"""The new name of a column whose cells are made plain, and what makes them so."""
 AMOUNT = re.compile(
     r"(?P<number>[-+\u2212\u2013]?\s*[.,]?\d(?:[\d.,  '’]*[\d.,])?(?:e[-+]?\d+)?)\s*"
     r'(?P<unit>[%°a-zµμ][^\d:=#]*(?:/[^\d:=#]+)?)',
@@ -58,14 +57,6 @@ FRAMES = 60  # in a second, at most: a larger number counts hundredths
 SAMPLE = 60  # cells by which a column is known
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class PlainColumn:
-    """A column whose cells are made plain: its new name, and what makes them so."""
-
-    name: str
-    make: Plain
-
-
 def is_amount(cell: str) -> bool:
     """Return True if a cell is a number with a unit, or a length of time."""
     match = AMOUNT.fullmatch(cell)
@@ -80,20 +71,19 @@ def plain_columns(columns: Mapping[str, Sequence[str]]) -> dict[str, PlainColumn
     with parts of a second that may be frames.
 
     """
-    found = {name: _plain_column(name, _sample(cells)) for name, cells in columns.items()}
-    return {name: column for name, column in found.items() if column is not None}
-
-
-def _sample(cells: Sequence[str]) -> list[str]:
-    filled = [cell for cell in cells if any(map(str.isdigit, cell))]
-    return filled[:: max(len(filled) // SAMPLE, 1)]
+    plain = {}
+    for name, cells in columns.items():
+        filled = [cell for cell in cells if any(map(str.isdigit, cell))]
+        if column := _plain_column(name, filled[:: max(len(filled) // SAMPLE, 1)]):
+            plain[name] = column
+    return plain
 
 
 def _plain_column(name: str, cells: Sequence[str]) -> PlainColumn | None:
     if not cells or not any(letter.isalpha() or letter in ':%°' for letter in cells[-1]):
         return None
     if all(map(TYPED.fullmatch, cells)):
-        return PlainColumn(name=name, make=lambda texts: texts.str.replace(r'^[^#]*#', ''))
+        return name, lambda texts: texts.str.replace(r'^[^#]*#', '')
     clocks = [match for cell in cells if (match := CLOCK.fullmatch(cell))]
     if len(clocks) == len(cells):
         return _of_hundredths(name, cells, [int(match['part']) for match in clocks])
@@ -101,8 +91,10 @@ def _plain_column(name: str, cells: Sequence[str]) -> PlainColumn | None:
     units = {match['unit'].strip() for match in amounts}
     if len(amounts) == len(cells) and all(map(is_unit, units)) and len(units) == 1:
         return _of_unit(name, units.pop())
-    if _are_spans(name, cells):
-        return PlainColumn(name=_with_unit(name, 's'), make=_seconds)
+    spans = [match for cell in cells if (match := SPAN.match(cell))]
+    marked = all(match['mark'] or match['clock'] for match in spans)
+    if len(spans) == len(cells) and (marked or read_name(name).kind in ('time', '')):
+        return _with_unit(name, 's'), _seconds
     if len(amounts) == len(cells) and all(map(is_unit, units)):
         raise ValueError(
             f'the cells of column {short(repr(name))} are in {listed(sorted(units))}: give all of '
@@ -119,22 +111,13 @@ def _of_hundredths(name: str, cells: Sequence[str], parts: Sequence[int]) -> Pla
             'part behind a third colon that may be frames, hundredths or, behind days, seconds: '
             'write hours:minutes:seconds with decimals'
         )
-    return PlainColumn(name=name, make=lambda texts: texts.str.replace(r':(\d\d)\s*$', '.$1'))
-
-
-def _are_spans(name: str, cells: Sequence[str]) -> bool:
-    """Return True if cells are lengths of time, be it by a mark or as those of a time."""
-    spans = [match for cell in cells if (match := SPAN.match(cell))]
-    if len(spans) < len(cells):
-        return False
-    marked = all(match['mark'] or match['clock'] for match in spans)
-    return marked or read_name(name).kind in ('time', '')
+    return name, lambda texts: texts.str.replace(r':(\d\d)\s*$', '.$1')
 
 
 def _of_unit(name: str, unit: str) -> PlainColumn | None:
     """Return a column in a unit of its cells; None for such as its quantity has not."""
     kind = read_name(name).kind
-    of_name, of_cells = _stated(name, kind), _stated(f'[{unit}]', kind)
+    of_name, of_cells = unit_and_scale(name, kind), unit_and_scale(f'[{unit}]', kind)
     if kind and not of_cells[0]:
         return None
     if kind and of_name[0] and of_name != of_cells:
@@ -144,12 +127,7 @@ def _of_unit(name: str, unit: str) -> PlainColumn | None:
         )
     named = name if of_name[0] or BRACKETS.search(name) else _with_unit(name, unit)
     pattern = rf'\s*{re.escape(unit)}\s*$'
-    return PlainColumn(name=named, make=lambda texts: texts.str.replace(pattern, ''))
-
-
-def _stated(name: str, kind: str) -> tuple[str, float]:
-    unit = unit_of(name, kind)
-    return (unit, 1.0) if unit else converted_unit(name, kind)
+    return named, lambda texts: texts.str.replace(pattern, '')
 
 
 def _with_unit(name: str, unit: str) -> str:
@@ -171,31 +149,15 @@ def _seconds(texts: pl.Series) -> pl.Series:
     return pl.DataFrame({'text': texts}).select(spans.alias(texts.name)).to_series()
 
 
-class _Types(Mapping[str, Any]):
-    """Types of columns by the names that they have in the file, without those made plain."""
-
-    def __init__(self, types: Mapping[str, Any], made: Mapping[str, str]) -> None:
-        self._types, self._made = types, made
-
-    def __getitem__(self, name: str) -> Any:
-        return self._types[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return (name for name in self._types if name not in self._made)
-
-    def __len__(self) -> int:
-        return sum(1 for _ in self)
-
-
 def plainly(read: Read, columns: Mapping[str, PlainColumn]) -> Read:
     """Return what reads a table as `read` does, some of its columns plain and by new names."""
-    held = {column.name: name for name, column in columns.items()}
+    held = {new: name for name, (new, _) in columns.items()}
 
     def read_plain(names: list[str], types: Mapping[str, Any]) -> Iterator[pl.DataFrame]:
         every = [held.get(name, name) for name in names]
-        for block in read(every, _Types(types, held)):
+        for block in read(every, TypesBut(types, held)):
             yield block.select(
-                columns[held[name]].make(block[held[name]]).alias(name)
+                columns[held[name]][1](block[held[name]]).alias(name)
                 if name in held and block[held[name]].dtype == pl.String
                 else block[held.get(name, name)].alias(name)
                 for name in names

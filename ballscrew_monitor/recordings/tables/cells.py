@@ -8,7 +8,7 @@ point, numbers with a decimal comma, or times of one of the forms of `clocks`.
 
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 import contextlib
 import dataclasses
 import datetime as dt
@@ -32,6 +32,8 @@ from surrogate.files import InputError
 Array = NDArray[np.float64]
 Form = Callable[[pl.Series], pl.Series]
 """Makes cells numbers, null where one is not a number."""
+Read = Callable[[list[str], Mapping[str, Any]], Iterator[pl.DataFrame]]
+"""Reads some columns of a table part by part, those of a text by the types of plain numbers."""
 ENDS = (KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
@@ -140,7 +142,11 @@ class Cells:
                 self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
             if cells.dtype == self._type:
                 self._count(cells)
-                self._count_holes(cells)
+                first = cells.head(SAMPLE)
+                if cells.null_count() or (cells.dtype == pl.String and (first == '').any()):
+                    places = np.flatnonzero(empties(cells)) + self._row
+                    count, check = self._holes
+                    self._holes = count + len(places), zlib.crc32(places.tobytes(), check)
             else:
                 self._count_typed(cells)
         self._row += len(cells)
@@ -167,12 +173,6 @@ class Cells:
         if self.signs.shows('.'):
             return pl.Float64
         return pl.Int64 if commas.good == self.count and not self.signs.doubtful else None
-
-    def _count_holes(self, cells: pl.Series) -> None:
-        if cells.null_count() or (cells.dtype == pl.String and (cells.head(SAMPLE) == '').any()):
-            places = np.flatnonzero(empties(cells)) + self._row
-            count, check = self._holes
-            self._holes = count + len(places), zlib.crc32(places.tobytes(), check)
 
     def reading(self, sign: str = '', order: str = '') -> Reading:
         """
@@ -385,6 +385,23 @@ def _grouped(sign: str) -> Form:
 
 _NUMBERS = {sign: _grouped(sign) for sign in OTHER_SIGN}
 """Forms of numbers by their decimal sign."""
+
+
+class TypesBut(Mapping[str, Any]):
+    """Types of columns, which change while a table is read, but for columns that are made."""
+
+    def __init__(self, types: Mapping[str, Any], made: Collection[str]) -> None:
+        """Leave out the types of columns of some names."""
+        self._types, self._made = types, made
+
+    def __getitem__(self, name: str) -> Any:
+        return self._types[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in self._types if name not in self._made)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
 
 
 class Unreadable(ValueError):

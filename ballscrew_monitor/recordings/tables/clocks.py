@@ -121,7 +121,14 @@ class TimeForm:
             pattern = '%H:%M:%S%.f' if self.pattern == MINUTES else self.pattern
             hours = texts.str.to_time(pattern, strict=False)
             seconds = hours.cast(pl.Int64).cast(pl.Float64) / SECOND
-            return _with_late_hours(seconds, texts) if pattern == HOURS[0] else seconds
+            if pattern != HOURS[0]:
+                return seconds
+            late = texts.str.extract(LATE_HOURS).cast(pl.Float64)
+            if late.null_count() == len(late):
+                return seconds
+            within = texts.str.replace(r'^\d+', '0').str.to_time(pattern, strict=False)
+            of_day = within.cast(pl.Int64).cast(pl.Float64) / SECOND + 3600.0 * late
+            return seconds.zip_with(late.is_null(), of_day)
         if self.kind == 'day':
             days = texts.str.to_date(self.pattern, strict=False)
             seconds = days.cast(pl.Int64).cast(pl.Float64) * DAY
@@ -158,16 +165,6 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     yield from map(tuple, by_hours.values())
 
 
-def _with_late_hours(seconds: pl.Series, texts: pl.Series) -> pl.Series:
-    """Return times of a day [s] with those from 24:00:00 on, which go on after midnight."""
-    late = texts.str.extract(LATE_HOURS).cast(pl.Float64)
-    if late.null_count() == len(late):
-        return seconds
-    within = texts.str.replace(r'^\d+', '0').str.to_time(HOURS[0], strict=False)
-    of_day = within.cast(pl.Int64).cast(pl.Float64) / SECOND + 3600.0 * late
-    return seconds.zip_with(late.is_null(), of_day)
-
-
 def _replaced(texts: pl.Series, steps: Iterable[tuple[str, str]]) -> pl.Series:
     for pattern, replacement in steps:
         texts = texts.str.replace_all(pattern, replacement)
@@ -192,20 +189,12 @@ def _all_forms() -> dict[TimeForm, tuple[set[str], re.Pattern[str]]]:
         if '%z' not in hours
     )
     days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
-    return {
-        form: (set(re.sub(r'%\.?\w', '', form.pattern)), _shape(form.pattern))
-        for form in (*moments, *of_day, *days)
-    }
-
-
-def _shape(pattern: str) -> re.Pattern[str]:
-    """Return the pattern of what texts of a form look like, whatever their numbers."""
-    parts = re.split(r'(%\.?\w)', pattern)
-    return re.compile(
-        ''.join(
-            PARTS.get(part, r' *\d+') if part[:1] == '%' else re.escape(part) for part in parts
-        )
-    )
+    forms = {}
+    for form in (*moments, *of_day, *days):
+        parts = re.split(r'(%\.?\w)', form.pattern)
+        shapes = (PARTS.get(one, r' *\d+') if one[:1] == '%' else re.escape(one) for one in parts)
+        forms[form] = set(''.join(parts[::2])), re.compile(''.join(shapes))
+    return forms
 
 
 def moments_of(text: str) -> list[tuple[float, TimeForm]]:

@@ -49,7 +49,10 @@ def decoded(path: Path, head: bytes) -> bytes | None:
     if coding := wide_coding(head):
         _check_size(path, f'of {coding.upper()[:6]}', 'save it as UTF-8')
         return _narrow(path, path.read_bytes(), coding)
-    if _ends_with_nul(path):
+    with path.open('rb') as stream:
+        stream.seek(max(path.stat().st_size - TAIL, 0))
+        ends_with_nul = stream.read().endswith(NUL)
+    if ends_with_nul:
         _check_size(path, 'with NULs behind its end', 'cut these off')
         return path.read_bytes().rstrip(NUL)
     return None
@@ -99,9 +102,3 @@ def _check_size(path: Path, what: str, cure: str) -> None:
         raise InputError(
             f'log {path} {what} has more than {limits.WORKBOOK // limits.MEGA} MB: {cure}'
         )
-
-
-def _ends_with_nul(path: Path) -> bool:
-    with path.open('rb') as stream:
-        stream.seek(max(path.stat().st_size - TAIL, 0))
-        return stream.read().endswith(NUL)

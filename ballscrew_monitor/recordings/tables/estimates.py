@@ -6,11 +6,9 @@ from collections.abc import Mapping, Sequence
 import math
 
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS, LINEAR_SPEED_UNITS
+from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.quantities import EPOCHS, SCALES
 import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 LONG = 3.0  # times the usual time between rows: across more nothing is known
 NEAR = 0.05  # part by which a speed may miss what its position says
@@ -48,6 +46,12 @@ def mark_of_none(values: Array) -> float:
             if np.all(others < abs(value) / FAR) or _leaps(known, float(value)):
                 return float(value)
     return math.nan
+
+
+def usual_step(times: Array) -> float:
+    """Return the usual step between times that differ, 0 if none do."""
+    steps = np.diff(times[np.isfinite(times)])
+    return float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
 
 
 def counts_rows(values: Array) -> bool:

@@ -62,19 +62,14 @@ class EvenRows:
         """Yield blocks with even times; the last rows of a block wait for the next."""
         stamps = np.zeros(0)
         held: Block | None = None
-        for row, times, columns in told:
-            if held is not None:
-                row = held[0]
-                columns = {
-                    name: np.concatenate([held[2][name], one]) for name, one in columns.items()
-                }
-                times = np.concatenate([held[1], times])
+        for block in told:
+            row, times, columns = block if held is None else behind(held, block)
             ready = max(len(times) - KEPT, 0) // STRETCH * STRETCH
             if ready:
                 even = self.times(np.append(stamps, times))[len(stamps) :]
                 yield row, even[:ready], {name: one[:ready] for name, one in columns.items()}
                 stamps = np.append(stamps, times[:ready])[-KEPT:]
-            held = row + ready, times[ready:], {name: one[ready:] for name, one in columns.items()}
+            held = rest((row, times, columns), ready)
         if held is not None and len(held[1]):
             even = self.times(np.append(stamps, held[1]))
             yield held[0], even[len(stamps) :], held[2]
@@ -109,6 +104,18 @@ class EvenRows:
         return float(places @ times) / float(places @ places)
 
 
+def behind(held: Block, block: Block) -> Block:
+    """Return a block behind the rows that wait for it."""
+    columns = {name: np.append(held[2][name], one) for name, one in block[2].items()}
+    return held[0], np.append(held[1], block[1]), columns
+
+
+def rest(block: Block, ready: int) -> Block:
+    """Return the rows of a block that wait, behind so many that are ready."""
+    row, times, columns = block
+    return row + ready, times[ready:], {name: one[ready:] for name, one in columns.items()}
+
+
 def even_rows(stamps: Array, places: Array) -> EvenRows | None:
     """
     Return the even rows at which positions [-] were sampled, None where the stamps [s] say it.
@@ -133,29 +140,21 @@ def even_rows(stamps: Array, places: Array) -> EvenRows | None:
     if not uneven.any():
         return None
     pairs = moving[1:] & moving[:-1] & (uneven[1:] | uneven[:-1])
-    most = usual_way / maybe[1].step
-    by_stamps = _roughness(moved / np.maximum(steps, TINY * maybe[1].step), most, pairs)
-    by_rows = [
-        _roughness(moved / (each * rows.step), most, pairs)
-        for rows, each in zip(maybe, passed, strict=True)
-    ]
+    spans = [each * rows.step for rows, each in zip(maybe, passed, strict=True)]
+    spans.append(np.maximum(steps, TINY * maybe[1].step))
+    changes = [np.abs(np.diff(moved / span))[pairs] for span in spans]
+    jump = usual_way / maybe[1].step  # as which a larger one counts
+    *by_rows, by_stamps = (float(np.minimum(each, jump).sum()) for each in changes)
     if float((off[0][moving] > COUNTING).mean()) > FEW:
         by_rows[0] = math.inf
     best = int(np.argmin(by_rows))
-    off_best = off[best][moving]
-    if not (off_best > EVEN).any():
+    if not _are_even(off[best][moving], by_rows[best], by_stamps):
         return None
-    if by_rows[best] < BETTER * by_stamps:
-        if not maybe[best].counts and _misses(amounts, steps / maybe[best].step, moving):
-            raise ValueError('rows are missing, and the stamps of the others are too coarse')
-        return maybe[best]
-    if by_stamps < BETTER * by_rows[best] or float((off_best > UNEVEN).mean()) < OFTEN:
-        return None
-    part = float(np.median(off_best[off_best > UNEVEN]))
-    raise ValueError(
-        f'its rows come early and late, by {part:.0%} of a step, and its slope is even over '
-        'neither their stamps nor even distances'
-    )
+    beside, long = np.maximum(amounts[:-2], amounts[2:]), steps / maybe[best].step > MISSING
+    far = (amounts[1:-1] > MISSING * beside) & long[1:-1]
+    if not maybe[best].counts and (far & moving[:-2] & moving[1:-1] & moving[2:]).any():
+        raise ValueError('rows are missing, and the stamps of the others are too coarse')
+    return maybe[best]
 
 
 def _rows(steps: Array, *, counts: bool) -> EvenRows:
@@ -168,13 +167,21 @@ def _rows(steps: Array, *, counts: bool) -> EvenRows:
     return EvenRows(step=usual, counts=counts)
 
 
-def _misses(amounts: Array, steps: Array, moving: Flags) -> bool:
-    """Return True if a way is far longer than those beside it, in a step that is long as well."""
-    beside = np.maximum(amounts[:-2], amounts[2:])
-    far = (amounts[1:-1] > MISSING * beside) & (steps[1:-1] > MISSING)
-    return bool((far & moving[:-2] & moving[1:-1] & moving[2:]).any())
+def _are_even(off: Array, by_rows: float, by_stamps: float) -> bool:
+    """
+    Return True if slopes are less rough over even rows than over stamps, so many steps off [-].
 
+    Raises ValueError where they are as rough over either.
 
-def _roughness(slopes: Array, usual: float, pairs: Flags) -> float:
-    """Return how much slopes [-] change from row to row in some pairs, jumps counted as usual."""
-    return float(np.minimum(np.abs(np.diff(slopes))[pairs], usual).sum())
+    """
+    if not (off > EVEN).any():
+        return False
+    if by_rows < BETTER * by_stamps:
+        return True
+    if by_stamps < BETTER * by_rows or float((off > UNEVEN).mean()) < OFTEN:
+        return False
+    part = float(np.median(off[off > UNEVEN]))
+    raise ValueError(
+        f'its rows come early and late, by {part:.0%} of a step, and its slope is even over '
+        'neither their stamps nor even distances'
+    )

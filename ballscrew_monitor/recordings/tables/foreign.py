@@ -323,14 +323,6 @@ def _xml(path: Path) -> Signals:
     return Signals(frame=pl.from_dicts(rows, infer_schema_length=None), start=start)
 
 
-def _shdr(path: Path) -> Signals:
-    return Signals(frame=line_messages.read_shdr(path), program=ADAPTER)
-
-
-def _echo(path: Path) -> Signals:
-    return Signals(frame=line_messages.read_echo(path))
-
-
 def _long(path: Path) -> Signals:
     frame, separator = long_form.read_long(path)
     with path.open('rb') as stream:
@@ -507,8 +499,8 @@ def _optional(module: str, path: Path, what: str, package: str = '') -> Any:
 READERS: dict[str, Callable[[Path], Signals]] = {
     'json': _json,
     'xml': _xml,
-    'shdr': _shdr,
-    'echo': _echo,
+    'shdr': lambda path: Signals(frame=line_messages.read_shdr(path), program=ADAPTER),
+    'echo': lambda path: Signals(frame=line_messages.read_echo(path)),
     'long': _long,
     'mat': _mat,
     'hdf': _hdf,

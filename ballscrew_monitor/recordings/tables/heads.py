@@ -38,8 +38,8 @@ from ballscrew_monitor.recordings.tables.numerals import plain_numeral
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
-    converted_unit,
     is_unit,
+    unit_and_scale,
     unit_of,
 )
 from ballscrew_monitor.recordings.words import short
@@ -91,18 +91,16 @@ NO_NAME = re.compile(r'column \d+|Unnamed: \d+')
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Property:
-    """What a head says, and the row in which it does so."""
+    """
+    What a head says, and the row in which it does so.
+
+    What it says of the machine has a value in the unit of a map, NaN where it is unclear.
+
+    """
 
     text: str
     row: int
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Statement:
-    """A text of the machine, and its value in the unit of a map, NaN where it is unclear."""
-
-    text: str
-    value: float
+    value: float = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -132,7 +130,7 @@ class Head:
     period: float = math.nan
     period_row: int = 0
     unclear_period: str = ''
-    machine: Mapping[str, Statement] = dataclasses.field(default_factory=dict)
+    machine: Mapping[str, Property] = dataclasses.field(default_factory=dict)
     factors: str = ''
 
     def renamed(self, names: Mapping[str, str]) -> 'Head':
@@ -253,8 +251,14 @@ class _Block:
             for line in lines
         ]
         kinds = [[_kind(cell) for cell in row] for row in self.rows]
-        self.data = [at for at, row in enumerate(kinds) if _is_data(row)]
-        self.width = _usual_width([len(self.rows[at]) for at in self.data])
+        self.data = [
+            at
+            for at, row in enumerate(kinds)
+            if 2 * row.count('n') >= max(len(row) - row.count('-'), 1)
+        ]
+        widths = Counter(len(self.rows[at]) for at in self.data)
+        few = TORN * len(self.data)  # torn or foreign rows
+        self.width = max((width for width, count in widths.items() if count > few), default=0)
         counts: list[Counter[str]] = [Counter() for _ in range(self.width)]
         settled = len(self.data) // 3
         for at in self.data[settled:]:
@@ -268,7 +272,11 @@ class _Block:
         fits = {at for at in self.data if self._fits(kinds[at])}
         self.begin = self._begin(kinds, fits)
         self.begin += self._bare_factors()
-        self.score = self._score(kinds, [at for at in fits if at >= self.begin])
+        rows = [kinds[at] for at in fits if at >= self.begin]
+        numbers = sum(row.count('n') for row in rows)
+        filled = sum(len(row) - row.count('-') for row in rows)
+        alone = (0.5 if self.width < 2 else 1.0) * (SURE if separator == BLANKS else 1.0)
+        self.score = len(rows) * alone * numbers / filled if filled else 0.0
 
     def _fits(self, kinds: Sequence[str]) -> bool:
         """Return True if a row holds a number or nothing wherever most rows do."""
@@ -304,24 +312,6 @@ class _Block:
                 return count
         return 0
 
-    def _score(self, kinds: Sequence[Sequence[str]], rows: Sequence[int]) -> float:
-        numbers = sum(kinds[at].count('n') for at in rows)
-        cells = sum(len(kinds[at]) - kinds[at].count('-') for at in rows)
-        alone = 0.5 if self.width < 2 else 1.0
-        alone *= SURE if self.separator == BLANKS else 1.0
-        return len(rows) * alone * numbers / cells if cells else 0.0
-
-
-def _usual_width(widths: Sequence[int]) -> int:
-    """Return the largest number of cells that rows have, but for a few torn or foreign ones."""
-    counts = Counter(widths)
-    return max((width for width, count in counts.items() if count > TORN * len(widths)), default=0)
-
-
-def _is_amount(cell: str) -> bool:
-    """Return True for a number, or a period or rate with its unit."""
-    return _kind(cell) == 'n' or math.isfinite(period_of(cell))
-
 
 def _number(cell: str) -> float:
     try:
@@ -345,11 +335,6 @@ def _follows(cells: Sequence[str], count: int) -> bool:
     before = count - 1
     times = [*map(_number, cells[before:])]
     return 0.0 < times[1] - times[0] < LONGEST_GAP * (times[-1] - times[1]) / (len(times) - 2)
-
-
-def _is_data(kinds: Sequence[str]) -> bool:
-    numbers = kinds.count('n')
-    return numbers > 0 and 2 * numbers >= len(kinds) - kinds.count('-')
 
 
 def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Block]) -> Head:
@@ -386,18 +371,13 @@ def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Bl
 def _check_unit(name: str, below: str) -> None:
     """Raise ValueError where a name states another unit than the cell of units below it."""
     kind = read_name(name).kind
-    told = _unit_and_scale(name, kind)
-    of_row = _unit_and_scale(f'[{below.strip("[]() ")}]', kind)
+    told = unit_and_scale(name, kind)
+    of_row = unit_and_scale(f'[{below.strip("[]() ")}]', kind)
     if told[0] and of_row[0] and told != of_row:
         raise ValueError(
             f'the name of column {short(repr(name))} states another unit than the row of units, '
             f'which says {short(below)}: take the wrong one out'
         )
-
-
-def _unit_and_scale(column: str, kind: str) -> tuple[str, float]:
-    unit = unit_of(column, kind)
-    return (unit, 1.0) if unit else converted_unit(column, kind)
 
 
 def _joined(name: str, below: str) -> str:
@@ -422,20 +402,18 @@ class _Above:
         for _, row in self.wide:
             kind = property_of(row[0])
             if kind in ('name', 'symbol', 'unit') or (
-                kind in ('period', 'rate') and sum(map(_is_amount, row)) > 1
+                kind in ('period', 'rate')
+                and sum(_kind(one) == 'n' or math.isfinite(period_of(one)) for one in row) > 1
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
-        if 'name' in self.rows and self._is_remark(self.rows['name']):
-            del self.rows['name']
-
-    def _is_remark(self, names: list[str]) -> bool:
-        """Return True if a longer row calls more columns by a known name: this is a remark."""
-        return any(
+        names = self.rows.get('name', [])
+        if names and any(
             sum(map(bool, row)) > sum(map(bool, names)) and _known(row) > _known(names)
             for _, row in self.wide
             if not _is_of_numbers(row)
-        )
+        ):
+            del self.rows['name']  # a remark: a longer row has more names that are known
 
     def head(self, first: int) -> Head:
         names, named = self._names()
@@ -673,9 +651,9 @@ class _Above:
                 found[kind] = Property(text=value, row=line.row)
         return found
 
-    def _machine(self) -> dict[str, Statement]:
+    def _machine(self) -> dict[str, Property]:
         """Return what the lines say of the machine; several that differ are unclear."""
-        found: dict[str, Statement] = {}
+        found: dict[str, Property] = {}
         for line, row in self._narrow():
             text = ' '.join((line.raw or ' '.join(line.cells)).split())
             if (len(row) > 1 and _known(row)) or _is_of_numbers(row):
@@ -686,7 +664,7 @@ class _Above:
                 if math.isfinite(stated) or of.hint.search(text):
                     if (before := found.get(name)) and before.value != stated:
                         text, stated = f'{before.text}; {text}', math.nan
-                    found[name] = Statement(text=text, value=stated)
+                    found[name] = Property(text=text, row=line.row, value=stated)
         return found
 
     def _narrow(self) -> Iterator[tuple[Line, list[str]]]:

@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
 from typing import Any
 
+from ballscrew_monitor.recordings.tables.cells import Read, TypesBut
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, words_of
 import numpy as np
 import polars as pl
 
-Read = Callable[[list[str], Mapping[str, Any]], Iterator[pl.DataFrame]]
 PARTS = {
     'year': 'year jahr',
     'month': 'month monat',
@@ -77,7 +77,8 @@ def joined_time(names: Sequence[str], rows: Callable[[list[str]], pl.DataFrame])
         if _are_parts(columns, rows(list(columns.values()))):
             first = names[min(map(names.index, columns.values()))]
             told = ', '.join(BRACKETS.sub('', one).strip() for one in columns.values())
-            of_clock = 'hour' in columns or ('moment' in columns and not _is_count(rows([first])))
+            counts = _text(rows([first]).to_series()).str.contains(WHOLE).fill_null(False).all()
+            of_clock = 'hour' in columns or ('moment' in columns and not counts)
             name = f'time of {told}' if of_clock else f'time of {told} [s]'
             return JoinedTime(name=name, columns=columns)
     return JoinedTime(name='', columns={})
@@ -103,10 +104,6 @@ def _candidates(names: Sequence[str]) -> Iterator[dict[str, str]]:
             yield {'moment': moment, part: name}
 
 
-def _is_count(rows: pl.DataFrame) -> bool:
-    return bool(_text(rows.to_series()).str.contains(WHOLE).fill_null(False).all())
-
-
 def _are_parts(columns: Mapping[str, str], rows: pl.DataFrame) -> bool:
     """Return True if the first rows hold whole numbers of parts, which together rise."""
     texts = {part: _text(rows[name]) for part, name in columns.items()}
@@ -129,14 +126,12 @@ def _are_parts(columns: Mapping[str, str], rows: pl.DataFrame) -> bool:
     most |= MOST if 'hour' in numbers else {}
     if any((numbers[part] > most[part]).any() for part in numbers if part in most):
         return False
-    return not subs or _wraps(moment, numbers, subs[0])
-
-
-def _wraps(moment: pl.Series | None, numbers: Mapping[str, Any], sub: str) -> bool:
-    """Return True if parts of a second rise within each, and begin again with the next."""
+    if not subs:
+        return True
+    # Parts of a second rise within each, and begin again with the next.
     seconds = numbers['second'] if moment is None else moment.rle_id().to_numpy()
     within = np.diff(seconds) == 0
-    steps = np.diff(numbers[sub])
+    steps = np.diff(numbers[subs[0]])
     if not (within & (steps > 0)).any():
         return False
     begins_again = steps[~within] <= 0 if within.mean() > 0.5 else np.ones(1, bool)
@@ -156,23 +151,7 @@ def joining(read: Read, time: JoinedTime) -> Read:
             return
         parts = list(time.columns.values())
         others = [name for name in names if name != time.name]
-        for block in read(list(dict.fromkeys([*others, *parts])), _Without(types, time.name)):
+        for block in read(list(dict.fromkeys([*others, *parts])), TypesBut(types, {time.name})):
             yield block.with_columns(time.of(block)).select(names)
 
     return read_joined
-
-
-class _Without(Mapping[str, Any]):
-    """Types of columns but for one."""
-
-    def __init__(self, types: Mapping[str, Any], name: str) -> None:
-        self._types, self._name = types, name
-
-    def __getitem__(self, name: str) -> Any:
-        return self._types[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return (name for name in self._types if name != self._name)
-
-    def __len__(self) -> int:
-        return sum(1 for _ in self)

@@ -8,8 +8,7 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
-import dataclasses
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 import math
 from pathlib import Path
 from typing import Any
@@ -154,9 +153,9 @@ class TableLog(Bag):
             key=lambda each: (each[1].source, each[0]),
         )
         parts = [
-            _Part(
-                row=joined([self._event(one, notes, axis=number) for number, one in held]),
-                inputs=[one for _, one in held],
+            (
+                joined([self._event(one, notes, axis=number) for number, one in held]),
+                [one for _, one in held],
             )
             for group in range(len(self._series.counts))
             for held in [[each for each in inputs if self._pattern(each[1]).group == group]]
@@ -164,13 +163,11 @@ class TableLog(Bag):
         order, done = EventOrder(period, self.run_borders), 0
         most = max(AT_ONCE // max(len(inputs), 1), 1)
         for groups in _together(self._blocks(), most=most):
-            every = [self._events(rows, part) for rows, part in zip(groups, parts, strict=True)]
+            every = [self._events(rows, *part) for rows, part in zip(groups, parts, strict=True)]
             stamps = groups[0].stamps
             events = every[0]
             if len(groups) > 1:
-                read = [
-                    rows.stamps for rows, part in zip(groups, parts, strict=True) if part.inputs
-                ]
+                read = [rows.stamps for rows, (_, held) in zip(groups, parts, strict=True) if held]
                 stamps = np.unique(np.concatenate(read))
                 events = joined(every)
                 events = some(events, np.lexsort((events['source'], events['stamp'])))
@@ -200,9 +197,8 @@ class TableLog(Bag):
         read = one.read(self._pattern(one).message, now=STAMP, max_future=0)
         return event_of(read, notes, axis=axis, log_time=STAMP, place=0)
 
-    def _events(self, rows: Rows, part: '_Part') -> Events:
-        """Return the events of some rows of a group by stamp and source."""
-        row, inputs = part.row, part.inputs
+    def _events(self, rows: Rows, row: Events, inputs: Sequence[Input]) -> Events:
+        """Return the events of some rows by stamp and source: those of any row, and its inputs."""
         if not inputs:
             return row
         events = repeated(row, len(rows.stamps))
@@ -233,14 +229,6 @@ class TableLog(Bag):
             yield groups
         for note in filter(None, (fit.note() for fit in fits)):
             self.remark(note)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class _Part:
-    """The inputs that read a group of columns, and the events of any of its rows."""
-
-    row: Events
-    inputs: list[Input]
 
 
 @batches.register

@@ -114,7 +114,12 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     first = form.first
     cells = _columns(lines[first:], form)
     times = [pl.col(f'{place}').alias(f'{OWN}time {place}') for place in form.times]
-    rows = cells.select(*times, name=_told_apart(cells, form), value=_values(cells, form))
+    names = cells[f'{form.name}']
+    for place in form.more:  # what tells signals of one name apart
+        pair = pl.DataFrame({'name': names, 'more': cells[f'{place}']})
+        if AXIS.search(form.names[place]) or pair.unique().height > names.n_unique():
+            names = pair.select(pl.concat_str('more', 'name', separator=' '))['more']
+    rows = cells.select(*times, name=names, value=_values(cells, form))
     if form.unit >= 0:
         rows = rows.with_columns(name=_with_units(rows['name'], cells[f'{form.unit}']))
     heads = ['', form.names[form.name]]  # which stand above each part of an export
@@ -155,7 +160,11 @@ def _form(lines: Sequence[str], separator: str) -> LongForm | None:
     columns = list(zip(*(rows[at] for at in wide), strict=True))
     if not header:
         roles = _roles_by_cells(columns)
-    if not {'name', 'value'} <= set(roles) or not _are_signals(columns[roles['name']]):
+    if not {'name', 'value'} <= set(roles):
+        return None
+    signals = columns[roles['name']]  # several, each of them again and again
+    different = set(signals) - {''}
+    if not different or len(different) * REPEATED > len(signals) or any(map(is_number, signals)):
         return None
     names = rows[first] if header else [''] * width
     for at, cells in enumerate(columns):
@@ -223,14 +232,6 @@ def _roles_by_cells(columns: Sequence[Sequence[str]]) -> dict[str, int]:
     return {'name': names[0], 'value': values[0]} | ({'unit': units[0]} if units else {})
 
 
-def _are_signals(names: Sequence[str]) -> bool:
-    """Return True if texts may name signals: several, each of them again and again."""
-    different = set(names) - {''}
-    if _share(map(is_number, names)) or not different:
-        return False
-    return len(different) * REPEATED <= len(names)
-
-
 def _times(
     columns: Sequence[Sequence[str]], names: Sequence[str], others: set[int]
 ) -> dict[int, str]:
@@ -287,16 +288,6 @@ def _columns(lines: Sequence[str], form: LongForm) -> pl.DataFrame:
         truncate_ragged_lines=True,
     )
     return frame.with_columns(pl.all().str.strip_chars())
-
-
-def _told_apart(cells: pl.DataFrame, form: LongForm) -> pl.Series:
-    """Return the name of the signal of each line, with what tells those of one name apart."""
-    names = cells[f'{form.name}']
-    for place in form.more:
-        pair = pl.DataFrame({'name': names, 'more': cells[f'{place}']})
-        if AXIS.search(form.names[place]) or pair.unique().height > names.n_unique():
-            names = pair.select(pl.concat_str('more', 'name', separator=' '))['more']
-    return names
 
 
 def _values(cells: pl.DataFrame, form: LongForm) -> pl.Expr:

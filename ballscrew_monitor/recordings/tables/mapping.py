@@ -269,8 +269,9 @@ def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
     known = ('log', 'time', 'axes', 'assumed', 'parameters', *TOP_TEXTS, *LINES)
     _check_keys('the map', content, known)
-    if 'machine' in content:
-        _check_machine(content['machine'])
+    machine = content.get('machine', 'unnamed')
+    if not isinstance(machine, str) or not machine.strip():
+        raise InputError(f'machine is {machine!r}, it must be a text, the name of the machine')
     axes = content.get('axes')
     if not isinstance(axes, dict) or not axes:
         raise InputError('axes is missing, it must name at least one axis with its columns')
@@ -306,11 +307,6 @@ def make_map(content: Any) -> TableMap:
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
     return made
-
-
-def _check_machine(name: Any) -> None:
-    if not isinstance(name, str) or not name.strip():
-        raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
 
 
 def _date_from(content: Mapping[str, Any], stated: Mapping[str, Any]) -> str:

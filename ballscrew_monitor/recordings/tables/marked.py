@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cells of columns by the marks beside them: nan where not valid, with a minus if backward."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ballscrew_monitor.recordings.tables.cells import empties
+from ballscrew_monitor.recordings.tables.cells import empties, Read
 from ballscrew_monitor.recordings.tables.marks import Mark, Marks, MOST, plain_cell
 from ballscrew_monitor.recordings.tables.signs import MINUS, with_plain_sign
 import polars as pl
 
 FEW = 0.05  # of the cells that have a minus by noise
-Read = Callable[[list[str], Mapping[str, Any]], Iterator[pl.DataFrame]]
 
 
 def marked(read: Read, marks: Mapping[str, Marks]) -> Read:
@@ -33,7 +32,11 @@ def _marked(block: pl.DataFrame, name: str, marks: Marks) -> pl.Series:
     empty = pl.Series(empties(cells))
     if marks.backward:
         back = _holds(block, marks.backward) & ~empty
-        cells = _negative(cells).zip_with(back, cells)
+        if cells.dtype == pl.String:
+            minus = '-' + with_plain_sign(cells).str.strip_prefix('-')
+        else:
+            minus = -cells.abs()
+        cells = minus.zip_with(back, cells)
     if marks.valid:
         unknown = 'nan' if cells.dtype == pl.String else float('nan')
         cells = cells if cells.dtype == pl.String else cells.cast(pl.Float64)
@@ -49,13 +52,6 @@ def _holds(block: pl.DataFrame, mark: Mark) -> pl.Series:
     return column.is_in(chosen).fill_null(False)
 
 
-def _negative(cells: pl.Series) -> pl.Series:
-    """Return amounts with a minus."""
-    if cells.dtype == pl.String:
-        return '-' + with_plain_sign(cells).str.strip_prefix('-')
-    return -cells.abs()
-
-
 def look_at_marks(
     blocks: Iterable[pl.DataFrame], names: Sequence[str]
 ) -> tuple[set[str], dict[str, list[str]]]:
@@ -65,7 +61,12 @@ def look_at_marks(
     for block in blocks:
         rows += block.height
         for name in names:
-            below[name] += _negatives(block[name])
+            column = block[name]
+            if column.dtype == pl.String:
+                negative = column.str.contains(rf'^\s*[{MINUS}]\s*[0.,]*[1-9]')
+            else:
+                negative = column < 0 if column.dtype.is_numeric() else pl.Series([False])
+            below[name] += int(negative.fill_null(False).sum())
             if len(cells[name]) <= MOST:
                 cells[name] |= {*map(_text, block[name].unique().to_list())} - {''}
     signed = {name for name, count in below.items() if count > FEW * rows}
@@ -74,10 +75,3 @@ def look_at_marks(
 
 def _text(cell: Any) -> str:
     return plain_cell(cell) if not isinstance(cell, str) else cell.strip()
-
-
-def _negatives(cells: pl.Series) -> int:
-    """Return how many cells are below 0."""
-    if cells.dtype == pl.String:
-        return int(cells.str.contains(rf'^\s*[{MINUS}]\s*[0.,]*[1-9]').fill_null(False).sum())
-    return int((cells < 0).fill_null(False).sum()) if cells.dtype.is_numeric() else 0

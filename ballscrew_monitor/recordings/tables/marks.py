@@ -170,18 +170,15 @@ def backward_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | 
     """Return the cells of a column of directions that say backward, None if unclear."""
     plain = {cell: plain_cell(cell) for cell in cells if cell.strip()}
     says = _truth(BACKWARD, words)
-    if OF_MOTIONS & set(words) and says is None and not _may_be_ways({*plain.values()}):
-        return []
+    if OF_MOTIONS & set(words) and says is None:
+        texts = {*plain.values()}
+        ways = {text for text in texts if text in WAYS and not text.isdigit()}
+        if not (1 < len(texts) <= FEW_WAYS or (ways and len(texts) <= MOST)):
+            return []  # it tells something else of a motion
     table = WAYS if says is None else {cell: each is says for cell, each in TRUTHS.items()}
     back = [cell for cell, text in plain.items() if table.get(text)]
     is_clear = set(plain.values()) <= set(table) and (back or says is not None)
     return back if is_clear or not plain else None
-
-
-def _may_be_ways(cells: Collection[str]) -> bool:
-    """Return True if cells are a way or two and rest, or some are words of ways."""
-    ways = {cell for cell in cells if cell in WAYS and not cell.isdigit()}
-    return 1 < len(cells) <= FEW_WAYS or (bool(ways) and len(cells) <= MOST)
 
 
 def tells_apart(words: Collection[str]) -> bool:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
@@ -14,6 +14,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
     factor_of,
     kind_by_unit,
     LETTERED,
+    unit_and_scale,
     unit_of,
     unknown_unit,
     words_of,
@@ -159,6 +160,7 @@ class Named:
 def read_name(column: str, text: str = '') -> Named:
     """Return what the name of a column says, or a longer text about it."""
     held, column = column, OF_CONTROL.sub('', column)
+
     told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, OF_DRIVES.sub(_of_drive, text or column)))
     words = words_of(told)
     place, axis = _place(words)
@@ -168,8 +170,9 @@ def read_name(column: str, text: str = '') -> Named:
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
-    if place == 'axis' and not kind and _is_of_a_diagram(told, words):
-        place, axis = 'machine', ''
+    of_axis = [word for word in words if not word.isdigit() and word not in LINEAR | OF_A_DIAGRAM]
+    if place == 'axis' and not kind and not of_axis and unit_of(told, 'time') in TIMES_BY_UNIT:
+        place, axis = 'machine', ''  # a time that is named as an axis of a diagram, as X-Axis [ms]
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
@@ -205,12 +208,6 @@ def read_name(column: str, text: str = '') -> Named:
         scale=scale,
         doubtful=doubtful,
     )
-
-
-def _is_of_a_diagram(told: str, words: Sequence[str]) -> bool:
-    """Return True for a time that is named as the axis of a diagram, such as X-Axis [ms]."""
-    left = [word for word in words if not word.isdigit() and word not in LINEAR | OF_A_DIAGRAM]
-    return not left and unit_of(told, 'time') in TIMES_BY_UNIT
 
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
@@ -275,7 +272,9 @@ def _kind(words: Sequence[str]) -> str:
     if OTHERS & set(words):
         return ''
     found = [kind for word in words for kind, known in KINDS.items() if word in known]
-    if not found or (found[-1] == 'temperature' and _is_of_another_part(set(words))):
+    of_screw = OF_THE_SCREW & set(words)
+    of_another = (OF_ANOTHER_PART | WANTED | (set() if of_screw else BEARINGS)) & set(words)
+    if not found or (found[-1] == 'temperature' and of_another):
         return ''
     is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
     return '' if is_quality else found[-1]
@@ -291,12 +290,10 @@ def _kind_of_unit(column: str, words: Sequence[str]) -> str:
     last = _kind(words)
     found = [kind for kind, known in KINDS.items() if known & set(words)] if last else []
     found += ['torque', 'current'] if last == 'load' and BRACKETS.search(column) else []
-    if last in ('', 'time') or unit_of(column, last) or converted_unit(column, last)[0]:
+    if last in ('', 'time') or unit_and_scale(column, last)[0]:
         return ''
     others = [kind for kind in found if kind not in (last, 'time', 'temperature')]
-    return next(
-        (kind for kind in others if unit_of(column, kind) or converted_unit(column, kind)[0]), ''
-    )
+    return next((kind for kind in others if unit_and_scale(column, kind)[0]), '')
 
 
 def told_by_units(named: Sequence[Named]) -> list[str]:
@@ -308,12 +305,6 @@ def told_by_units(named: Sequence[Named]) -> list[str]:
         if set(words_of(one.column)) & KINDS['load']
         and not set(words_of(one.column)) & KINDS[one.kind]
     ]
-
-
-def _is_of_another_part(words: Set[str]) -> bool:
-    """Return True if words are of a temperature of something else than a screw, its nut or oil."""
-    alone = BEARINGS & words and not OF_THE_SCREW & words
-    return bool(alone or (OF_ANOTHER_PART | WANTED) & words)
 
 
 def _kind_by_unit(column: str, place: str) -> str:
@@ -491,7 +482,12 @@ def left_out(left: Sequence[Named]) -> list[str]:
 
 def _by_word(general: Sequence[Named]) -> dict[str, list[Named]]:
     """Return the columns of axes that only a word tells apart; nothing for less than two."""
-    words = {one.column: _axis_name(one) for one in general if one.kind in INPUTS}
+    words = {}
+    for one in general:
+        word = word_of_the_axis(one)
+        name = f'axis{word}' if word.isdigit() else word
+        if one.kind in INPUTS:
+            words[one.column] = name if _NAME.fullmatch(name) else ''
     for kind in MOTION:
         axes = sorted({words[one.column] for one in general if one.kind == kind} - {''})
         if len(axes) > 1:
@@ -499,10 +495,3 @@ def _by_word(general: Sequence[Named]) -> dict[str, list[Named]]:
                 axis: [one for one in general if words.get(one.column) == axis] for axis in axes
             }
     return {}
-
-
-def _axis_name(one: Named) -> str:
-    """Return the name of an axis by the word that tells it, empty if that makes no name."""
-    word = word_of_the_axis(one)
-    name = f'axis{word}' if word.isdigit() else word
-    return name if _NAME.fullmatch(name) else ''

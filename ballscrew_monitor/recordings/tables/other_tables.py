@@ -11,6 +11,7 @@ without a time, or before the times above, and are further apart, or go far back
 from collections.abc import Sequence
 
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.estimates import usual_step
 from ballscrew_monitor.recordings.tables.time_gate import Run
 import numpy as np
 
@@ -34,19 +35,20 @@ def other_table(times: Array, row: int, step: float) -> str:
 
     """
     known = np.isfinite(times)
-    with np.errstate(invalid='ignore'):
-        breaks = (
-            np.flatnonzero(~(np.diff(times) >= 0.0)) + 1
-        )  # beside a row without a time as well
-    for begin in (at for at in breaks.tolist() if known[at]):
-        end = next((at for at in breaks.tolist() if at > begin), len(times))
+    with np.errstate(invalid='ignore'):  # there are breaks beside a row without a time as well
+        breaks = (np.flatnonzero(~(np.diff(times) >= 0.0)) + 1).tolist()
+    for begin in (at for at in breaks if known[at]):
+        end = next((at for at in breaks if at > begin), len(times))
         before, part = times[:begin][known[:begin]], times[begin:end]
         if len(before) < FEWEST:
             continue
         if _is_other(before, part, step, is_apart=not known[begin - 1]):
             words = f'{_rows(row + begin, row + end - 1)} {_distance(part)}'
             return f'{words} not as those above, which are {step:.3g} s apart'
-        if known[begin:].sum() <= STATISTICS and _goes_back(before, part, step):
+        far = FAR * np.ptp(before)
+        goes_back = before.max() - part[0] > far and np.diff(before).min() >= -far
+        is_run = len(part) > 1 and step / OTHER < usual_step(part) < step * OTHER
+        if known[begin:].sum() <= STATISTICS and goes_back and not is_run:
             words = f'{_rows(row + begin, row + len(times) - 1)} at the end'
             return f'{words}, from {part[0]:.6g} s on, do not go on from there, as statistics do'
     return ''
@@ -69,14 +71,6 @@ def rows_above(runs: Sequence[Run], step: float) -> str:
     return f'{words}, not as those below, which are {step:.3g} s apart'
 
 
-def _goes_back(before: Array, part: Array, step: float) -> bool:
-    """Return True if the rows of a part [s] are far before the latest one, and no run."""
-    far = FAR * np.ptp(before)
-    if before.max() - part[0] <= far or np.diff(before).min() < -far:
-        return False  # a counter that overflows, or runs
-    return len(part) < 2 or not step / OTHER < _step(part) < step * OTHER
-
-
 def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> bool:
     """Return True if the rows of a part [s] follow each other otherwise than those before it."""
     quantile, most = EVEN
@@ -85,7 +79,7 @@ def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> boo
         return False  # no even log
     if len(part) < 2:
         return is_apart and part[0] - before[-1] > LONG * step
-    return (is_apart or len(part) >= AGAIN) and not step / OTHER < _step(part) < step * OTHER
+    return (is_apart or len(part) >= AGAIN) and not step / OTHER < usual_step(part) < step * OTHER
 
 
 def _rows(first: int, last: int) -> str:
@@ -94,10 +88,4 @@ def _rows(first: int, last: int) -> str:
 
 def _distance(part: Array) -> str:
     """Return how far the rows of a part are from each other, in words."""
-    return f'are {_step(part):.3g} s apart,' if len(part) > 1 else 'stands alone,'
-
-
-def _step(times: Array) -> float:
-    """Return the usual step between times that differ [s], 0 if none do."""
-    steps = np.diff(times)
-    return float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 0.0
+    return f'are {usual_step(part):.3g} s apart,' if len(part) > 1 else 'stands alone,'

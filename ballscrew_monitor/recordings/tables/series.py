@@ -15,31 +15,22 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.amounts import (
-    are_amounts,
-    brakes_always,
-    fault_of_slope,
-    fault_of_speed,
-    opposes,
-    slopes,
-    stays_in_gaps,
-)
+from ballscrew_monitor.recordings.tables.amounts import fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
+from ballscrew_monitor.recordings.tables.doubts import (
+    doubts_of_columns,
+    doubts_of_motion,
+    motion_of,
+    of_slope,
+    with_sign,
+)
 from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, run_offsets
-from ballscrew_monitor.recordings.tables.times import (
-    groups_of,
-    in_step,
-    joined,
-    line,
-    Rows,
-    SHOWING,
-    Times,
-)
+from ballscrew_monitor.recordings.tables.times import groups_of, in_step, joined, line, Rows, Times
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 from ballscrew_monitor.settings.parameters import MOTOR_TORQUE
 import numpy as np
@@ -52,22 +43,9 @@ MOST_NAMED = 5  # parts of a file in a sentence
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
-OF_SLOPE = 'the speed is the slope of the position'
 OF_ONE_TURN = (
     'stays within a turn: where it jumps by more than half of one, the axis is taken to go on'
 )
-ONE_SIGN = {
-    **dict.fromkeys(
-        MOTOR,
-        'never changes its sign while the axis reverses, as amounts do, and a torque that holds a '
-        'weight',
-    ),
-    'load': 'never changes its sign while the axis reverses, as amounts do, and a weight',
-    'speed': 'never changes its sign, but the torque or force turns between motions, as beside '
-    'amounts',
-}
-"""What makes a sign doubtful, by quantity."""
-FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 TOGETHER = 16  # rows whose way is compared with their speed
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
@@ -212,19 +190,16 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     for name in mapping.time_columns:
         if name in table.left_out:
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
-    _check_factors(path, mapping, table)
-    _check_positions(path, mapping, table)
+    for doubt in doubts_of_columns(mapping, table):
+        raise InputError(f'log {path}: {doubt}')
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
     moving = [_moving(axis, table) for axis in axes]
     turns = dict(_turns_of(axes, table))
-    signed = [_with_sign(path, axis, table, turns) for axis, _ in moving]
+    signed = [with_sign(path, axis, table, turns) for axis, _ in moving]
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
-    _check_magnitudes(path, held, [one.group.columns for one in times])
-    _check_directions(path, held, table, turns)
-    _check_brakes(path, held, table, turns)
-    _check_gaps(path, held, table)
-    _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
+    for doubt in doubts_of_motion(held, table, turns, times):
+        raise InputError(f'log {path}: {doubt}')
     _look_at_slopes(held, turns, times)
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
@@ -267,80 +242,10 @@ def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
     return dataclasses.replace(axis, columns=columns), of_slope(axis.name, speed, fault)
 
 
-def of_slope(axis: str, speed: str, fault: str) -> str:
-    """Return why the speed of an axis is worked out from its position."""
-    return f'axis {axis}: {short(speed)} {fault}: {OF_SLOPE}'
-
-
-def _with_sign(
-    path: Path, axis: AxisMap, table: Table, turns: Mapping[str, float]
-) -> tuple[AxisMap, str]:
-    """
-    Return an axis whose torque or current says whether it holds amounts; a note if it does.
-
-    Raises InputError where neither the rows nor the map tell whether a column has a sign.
-
-    """
-    kinds = [kind for kind in SIGNED if kind in axis.columns]
-    data, note = _sampled(axis, table, turns), ''
-    for kind in kinds:
-        column = axis.columns[kind]
-        if column.magnitude is None:
-            magnitude = are_amounts(
-                kind,
-                data,
-                makes_load=bool(axis.load_from),
-                own_time=column.time != _motion(axis).time,
-            )
-            if magnitude is None:
-                apart = kind in MOTOR and are_apart(table, column.name, _motion(axis).name)
-                raise InputError(
-                    f'log {path}: {unclear_sign(axis.name, kind, column.name, apart=apart)}'
-                )
-            column = dataclasses.replace(column, magnitude=magnitude)
-            axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
-        if column.magnitude:
-            note = of_amounts(axis.name, kind, column.name)
-    return axis, note
-
-
-def _sampled(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
-    """Return rows of what has a sign and of the motion that span a log, in units of the map."""
-    data = {}
-    for kind in filter(axis.columns.__contains__, (*MOTION, *SIGNED)):
-        column = axis.columns[kind]
-        values = table.sampled(column.name)
-        counted = Turns(turns[column.name]).counted(values) if column.name in turns else values
-        data[kind] = line(counted, column, 1.0)
-    return data
-
-
-def _motion(axis: AxisMap) -> Column:
-    return axis.columns.get('speed') or axis.columns['position']
-
-
-def _check_slopes(
-    path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float], *, runs: int
-) -> None:
-    """Raise InputError for a position whose slope is no speed, of an axis that has no other."""
-    for axis in mapping.axes:
-        if 'speed' in axis.columns:
-            continue
-        column = axis.columns['position'].name
-        places = table.head(SHOWING)[column]
-        places = Turns(turns[column]).counted(places) if column in turns else places
-        if fault := fault_of_slope(places, runs):
-            raise InputError(
-                f'log {path}: {short(column)} {fault}: its slope is no speed. Name a column of '
-                f'the speed for axes.{axis.name} in the map, or record the position so that its '
-                'cells are empty where it is not new'
-            )
-
-
 def _look_at_slopes(mapping: TableMap, turns: Mapping[str, float], times: Sequence[Times]) -> None:
     """Take the rows of positions that tell a speed as even where they are; may ask."""
     for axis in mapping.axes:
-        name = _motion(axis).name
+        name = motion_of(axis).name
         if 'speed' in axis.columns:
             continue
         counted = Turns(turns[name]).counted if name in turns else np.asarray
@@ -349,77 +254,6 @@ def _look_at_slopes(mapping: TableMap, turns: Mapping[str, float], times: Sequen
             group.check_ways(name, counted)
         elif not group.group.hold:
             group.look_at_slope(name, counted)
-
-
-def _check_directions(
-    path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]
-) -> None:
-    """Raise InputError for a position that goes the other way than the speed beside it."""
-    for axis in mapping.axes:
-        if not set(MOTION) <= set(axis.columns):
-            continue
-        speed, position = (axis.columns[kind] for kind in MOTION)
-        apart = speed.time != position.time or are_apart(table, speed.name, position.name)
-        data = _sampled(axis, table, turns)
-        if not apart and opposes(data['speed'], data['position']):
-            raise InputError(
-                f'log {path}: {unclear_direction(axis.name, speed.name, position.name)}'
-            )
-
-
-def _check_brakes(path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]) -> None:
-    """Raise InputError for a torque that brakes in both directions, of which a load is made."""
-    for axis in mapping.axes:
-        kind = next((one for one in MOTOR if one in axis.columns), '')
-        if not kind or not axis.load_from:
-            continue
-        column, motion = axis.columns[kind], _motion(axis)
-        apart = column.time != motion.time or are_apart(table, column.name, motion.name)
-        if column.magnitude or column.is_scaled or apart:
-            continue
-        data = _sampled(axis, table, turns)
-        speed = data['speed'] if 'speed' in data else slopes(data['position'])
-        if brakes_always(data[kind], speed):
-            raise InputError(f'log {path}: {unclear_brake(axis.name, kind, column.name)}')
-
-
-def unclear_brake(axis: str, kind: str, column: str, scale: float = 1.0) -> str:
-    """Return what decides whether a torque against all motion has the wrong sign."""
-    return (
-        f'state axes.{axis}.{kind}.scale in the map, {-scale:g} if the sign of {short(column)} is '
-        f'turned, {scale:g} if a load drives the axis both ways: it is against the motion in both '
-        'directions, at steady speeds too, where friction asks for a torque that goes with it'
-    )
-
-
-def unclear_direction(axis: str, speed: str, position: str) -> str:
-    """Return what decides which of a speed and a position of other signs is right."""
-    return (
-        f'state axes.{axis}.speed.scale or axes.{axis}.position.scale in the map: '
-        f'{short(position)} moves against {short(speed)}, a scale below 0 turns that one of both '
-        'whose sign is not that of the axis'
-    )
-
-
-def _check_gaps(path: Path, mapping: TableMap, table: Table) -> None:
-    """Raise InputError for a speed that goes on in gaps, of which the map says nothing."""
-    speeds = {axis.name: axis.columns['speed'] for axis in mapping.axes if 'speed' in axis.columns}
-    unsaid = {name: column for name, column in speeds.items() if column.hold is None}
-    if not unsaid or mapping.time is None:
-        return
-    rows = table.head(SHOWING)
-    for name, column in unsaid.items():
-        if stays_in_gaps(rows[column.time or mapping.time.name], rows[column.name]):
-            raise InputError(f'log {path}: {unclear_gaps(name, "speed", column.name)}')
-
-
-def unclear_gaps(axis: str, kind: str, column: str) -> str:
-    """Return what decides whether a value that is the same after a gap has stayed."""
-    return (
-        f'state axes.{axis}.{kind}.hold in the map, true if {short(column)} was written when it '
-        'changed, false if nothing is known in gaps: it is the same before and after gaps, in '
-        'motion'
-    )
 
 
 def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, float]]:
@@ -431,48 +265,6 @@ def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, floa
         turn = TURN / abs(column.scale * conversions.ROTARY_POSITION_UNITS[column.unit])
         if is_within_turn(table.readings[column.name].extremes, turn):
             yield column.name, turn
-
-
-def unclear_sign(axis: str, kind: str, column: str, *, apart: bool) -> str:
-    """Return what decides whether a column of one sign holds amounts, at times of its own."""
-    why = f'{short(column)} {ONE_SIGN[kind]}'
-    if apart or kind not in MOTOR:
-        also = ', and amounts need the times of the motion' if apart else ''
-        return (
-            f'state `axes.{axis}.{kind}.magnitude: false` in the map if it has a sign, else take '
-            f'the column out of the map: {why}{also}'
-        )
-    return f'state axes.{axis}.{kind}.magnitude in the map, true or false: {why}'
-
-
-def are_apart(table: Table, one: str, other: str) -> bool:
-    """Return True if two columns of one time have their samples in different rows."""
-    return table.readings[one].holes != table.readings[other].holes
-
-
-def of_amounts(axis: str, kind: str, column: str) -> str:
-    """Return what is wrong with a torque or current that has the sign of the motion."""
-    return (
-        f'axis {axis}: {short(column)} never changes its sign while the axis reverses: its '
-        f'{kind} is taken with the sign of the motion, which is wrong where the axis brakes or '
-        'the load drives it'
-    )
-
-
-def _check_magnitudes(path: Path, mapping: TableMap, groups: Sequence[Collection[str]]) -> None:
-    """Raise InputError for amounts at other times than those of the motion."""
-    for axis in mapping.axes:
-        motion = _motion(axis)
-        for kind in MOTOR:
-            column = axis.columns.get(kind)
-            if column is None or not column.magnitude:
-                continue
-            if not any({motion.name, column.name} <= set(names) for names in groups):
-                raise InputError(
-                    f'log {path}: {short(column.name)} holds amounts without a sign at other '
-                    f'times than {short(motion.name)}: name another column for '
-                    f'axes.{axis.name}.{kind} in the map, or none'
-                )
 
 
 def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
@@ -500,39 +292,6 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     for one in times:
         one.since(begin)
     return times[0].stamps(begins), times[0].stamps([begin - gap / 2 for begin in begins])
-
-
-def _check_factors(path: Path, mapping: TableMap, table: Table) -> None:
-    """Raise InputError where the head scales columns and the map none."""
-    columns = [column for axis in mapping.axes for column in axis.columns.values()]
-    factors = table.source.head.factors
-    if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
-        raise InputError(f'log {path}: {unclear_factors(factors)}')
-
-
-def unclear_factors(factors: str) -> str:
-    """Return what decides by what columns are scaled of which the head states factors."""
-    return (
-        f'its head states {short(repr(factors))}: state `scale` and `offset` of these columns in '
-        'the map, or take that row out if the cells hold it'
-    )
-
-
-def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:
-    """Raise InputError for a position where no axis is."""
-    for axis in mapping.axes:
-        column = axis.columns.get('position')
-        reading = table.readings.get(column.name) if column else None
-        if column is None or reading is None:
-            continue
-        for position in reading.extremes.tolist():
-            if abs(position) > FARTHEST:
-                raise InputError(
-                    f'log {path}: column {short(repr(column.name))} holds a position of '
-                    f'{position:g} {column.unit}, allowed is up to {FARTHEST:g} {column.unit} in '
-                    f'both directions: name another column for axes.{axis.name}.position in the '
-                    'map, or none'
-                )
 
 
 def _readable(axis: AxisMap, left_out: Mapping[str, str]) -> AxisMap:

@@ -8,7 +8,7 @@ may end by a line feed, a carriage return or both. All is bounded before it is r
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import contextlib
 import csv
 import dataclasses
@@ -20,7 +20,7 @@ from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.tables import codings, foreign, heads
 from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainly
-from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
+from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
 from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
@@ -117,7 +117,7 @@ class Source:
     path: Path
     head: Head
     rows: int
-    read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
+    read: Read
     most: float = math.inf
     sheet: str = ''
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
@@ -141,7 +141,7 @@ class Source:
             columns = plain_columns(cells)
         if not columns:
             return self
-        head = self.head.renamed({name: column.name for name, column in columns.items()})
+        head = self.head.renamed({name: new for name, (new, _) in columns.items()})
         return dataclasses.replace(self, head=head, read=plainly(self.read, columns))
 
     def joined(self) -> 'Source':
@@ -224,34 +224,34 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
 def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
     head = _head_of(path)
     if head.startswith(codings.GZIP):
-        _check_packed(path)
+        packed = codings.unpacked(path, HEAD)
+        if packed.startswith((PARQUET, ZIP)) or foreign.kind_of(packed):
+            raise InputError(
+                f'log {path} is packed by gzip, of which texts with rows of cells are read alone: '
+                'unpack it before'
+            )
     if head.startswith(PARQUET):
         return _parquet(path)
     if head.startswith(ZIP):
         return _sheet(path, layout, sheet)
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
-        _check_columns(path, signals.frame.width)
-        frame, empty = signals.frame.lazy(), signals.empty_rows
-        source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
+        frame, is_grouped, empty = signals.frame, kind in foreign.GROUPED, signals.empty_rows
+        _check_columns(path, frame.width)
+        source = of_frame(path, frame.lazy(), signals.head(), frame.height, math.inf)
+        lengths = [frame.height - column.null_count() for column in frame]
         source = dataclasses.replace(
             source,
             left_out=signals.left_out,
             more_rows=signals.more_rows,
-            is_grouped=kind in foreign.GROUPED,
-            lengths=_lengths(signals.frame) if kind in foreign.GROUPED else {},
+            is_grouped=is_grouped,
+            lengths=dict(zip(source.names(), lengths, strict=True)) if is_grouped else {},
             short=ShortRows(count=len(empty), first=empty[0]) if empty else ShortRows(),
         )
-        texts = signals.frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
-        cells = dict(zip(signals.frame.columns, source.names(), strict=True))
+        texts = frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
+        cells = dict(zip(frame.columns, source.names(), strict=True))
         return source.plain({cells[name]: column.to_list() for name, column in texts.items()})
     return _text(path, layout, _Text.of(path, head))
-
-
-def _lengths(frame: pl.DataFrame) -> dict[str, int]:
-    """Return how many cells each column of a frame holds."""
-    names = heads.unlike(frame.columns)
-    return {name: frame.height - column.null_count() for name, column in zip(names, frame)}
 
 
 def is_log(path: Path) -> bool:
@@ -285,16 +285,6 @@ def _head_of(path: Path) -> bytes:
     if not head.strip():
         raise InputError(f'log {path} is empty, it must be a table or a file of signals')
     return head
-
-
-def _check_packed(path: Path) -> None:
-    """Raise InputError unless what gzip packed is a text with rows of cells."""
-    head = codings.unpacked(path, HEAD)
-    if head.startswith((PARQUET, ZIP)) or foreign.kind_of(head):
-        raise InputError(
-            f'log {path} is packed by gzip, of which texts with rows of cells are read alone: '
-            'unpack it before'
-        )
 
 
 def _parquet(path: Path) -> Source:

@@ -90,7 +90,11 @@ class TimeGate:
                 if number and not self._pending:
                     self.runs[-1].shift -= HOUR
                     self.clocks.append((int(rows[cut]), -HOUR))
-                self._follow_all(times[part], rows[part])
+                rise = cut < part.stop and self._goes_on(times[part])
+                width = max(part.stop - cut, 1) if rise else WINDOW
+                for begin in range(cut, part.stop, width):
+                    piece = slice(begin, min(begin + width, part.stop))
+                    self._follow(times[piece], rows[piece])
 
     def _set_on(self, times: Array) -> list[int]:
         """Return the places in a block before which a clock was set on by an hour."""
@@ -100,13 +104,6 @@ class TimeGate:
         before = np.concatenate([last, times[:-1]])
         leaps = (times - before >= HOUR) & (times - before <= HOUR + CLOSE)
         return [at for at in np.flatnonzero(leaps).tolist() if _is_set_on(before[at], times[at])]
-
-    def _follow_all(self, times: Array, rows: RowNumbers) -> None:
-        """Follow the runs through rows, in few steps where all rise."""
-        width = len(times) if len(times) and self._goes_on(times) else WINDOW
-        for begin in range(0, len(times), width):
-            end = begin + width
-            self._follow(times[begin:end], rows[begin:end])
 
     def _add_steps(self, times: Array, rows: RowNumbers) -> None:
         """Count the steps between rows, and how many share each time."""

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.amounts import leap_on
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
-from ballscrew_monitor.recordings.tables.even_rows import even_rows, EvenRows
+from ballscrew_monitor.recordings.tables.even_rows import behind, Block, even_rows, EvenRows, rest
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.other_tables import (
     FEW_HOLES,
@@ -191,34 +191,18 @@ class Spread:
             f'{self.usual / self.step:.4g} rows in a second'
         )
 
-    def blocks(
-        self, told: Iterable[tuple[int, Array, dict[str, Array]]]
-    ) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def blocks(self, told: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks with their times spread; the rows of the last one wait for the next."""
-        held: tuple[int, Array, dict[str, Array]] | None = None
+        held: Block | None = None
         first = True
-        for row, times, columns in told:
-            if held is not None:
-                row = held[0]
-                times = np.concatenate([held[1], times])
-                columns = {
-                    name: np.concatenate([held[2][name], values])
-                    for name, values in columns.items()
-                }
-            ready = (
-                int(np.flatnonzero(times != times[-1])[-1]) + 1
-                if (times != times[-1]).any()
-                else 0
-            )
+        for block in told:
+            row, times, columns = block if held is None else behind(held, block)
+            ready = int(np.flatnonzero(np.append(True, times != times[-1]))[-1])
             if ready:
                 spread = self._spread(times[:ready], float(times[ready]), first=first)
                 yield row, spread, {name: values[:ready] for name, values in columns.items()}
                 first = not self._follows(times[ready] - times[ready - 1])
-            held = (
-                row + ready,
-                times[ready:],
-                {name: values[ready:] for name, values in columns.items()},
-            )
+            held = rest((row, times, columns), ready)
         if held is not None:
             yield held[0], self._spread(held[1], math.inf, first=first), held[2]
 
@@ -257,7 +241,10 @@ class Times:
     def __init__(self, table: Table, mapping: TableMap, group: Group, shown: Shown) -> None:
         """Look through the times; raises InputError when they give no stamps."""
         self.group, self._table, self._mapping = group, table, mapping
-        self.gate, self._course = TimeGate(wall=self._is_wall()), Course()
+        time = table.readings[group.time_columns[0]] if mapping.time else None
+        # A clock on the wall may be set back.
+        wall = time is not None and time.is_time and not time.is_zoned
+        self.gate, self._course = TimeGate(wall=wall), Course()
         silence = Silence()
         self._spread: Spread | None = None
         self._even: EvenRows | None = None
@@ -421,19 +408,17 @@ class Times:
             show((row + len(times) - self._table.first_row) / self._table.rows)
             yield Rows(stamps=self._stamps(times), columns=columns)
 
-    def _placed(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def _placed(self, names: Collection[str]) -> Iterator[Block]:
         """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
         told = self._spread_out(names)
         told = self._even.blocks(told) if self._even else told
         yield from self._held(told) if self.group.hold else told
 
-    def _spread_out(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def _spread_out(self, names: Collection[str]) -> Iterator[Block]:
         told = self._known(names)
         return self._spread.blocks(told) if self._spread else told
 
-    def _held(
-        self, told: Iterable[tuple[int, Array, dict[str, Array]]]
-    ) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def _held(self, told: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks in which the rows before gaps within a run are repeated."""
         last = np.zeros(0), dict[str, Array]()
         usual = self.gate.step
@@ -456,7 +441,7 @@ class Times:
             yield row, (every[at] + late)[order], values
             last = times[-1:], {name: column[-1:] for name, column in columns.items()}
 
-    def _known(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def _known(self, names: Collection[str]) -> Iterator[Block]:
         starts = np.array(sorted(self._shifts), dtype=np.int64)
         shifts = np.array([0.0, *(self._shifts[one] for one in starts.tolist())])
         for row, times, columns in self._told(names):
@@ -470,9 +455,14 @@ class Times:
             if len(times):
                 yield row, times, columns
 
-    def _told(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+    def _told(self, names: Collection[str]) -> Iterator[Block]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
-        row, midnights = 0, self._midnights()
+        row, midnights = 0, None
+        if self._mapping.time is not None and not self._mapping.date:
+            reading = self._table.readings[self.group.time_columns[0]]
+            # Times of a day go on, if no date tells them apart.
+            if reading.is_time and is_of_a_day(reading.extremes):
+                midnights = Midnights()
         for block, holes in self._table.blocks_with_holes(names, self.group.hollow):
             times = self._times(block, row, midnights)
             if holes is not None:
@@ -495,20 +485,6 @@ class Times:
             if other := other or other_table(self._tail, row, self.gate.step):
                 raise InputError(f'{where}: {other}: {TAKE_OUT}')
 
-    def _is_wall(self) -> bool:
-        """Return True if the times are those of a clock on the wall, which may be set back."""
-        if self._mapping.time is None:
-            return False
-        reading = self._table.readings[self.group.time_columns[0]]
-        return reading.is_time and not reading.is_zoned
-
-    def _midnights(self) -> Midnights | None:
-        """Return what makes times of a day go on, None where the log has others, or dates."""
-        if self._mapping.time is None or self._mapping.date:
-            return None
-        reading = self._table.readings[self.group.time_columns[0]]
-        return Midnights() if reading.is_time and is_of_a_day(reading.extremes) else None
-
     def _times(self, columns: dict[str, Array], row: int, midnights: Midnights | None) -> Array:
         """Return the times of rows from `row` on [s], as the log counts them."""
         time = self._mapping.time
@@ -521,13 +497,11 @@ class Times:
         told = cells if midnights is None else midnights.passed(cells)
         return days + line(told, time, factor) + shift
 
-    def _nanoseconds(self, times: Array) -> Array:
-        """Return times [ns] since the first of them, or since 1970 where the log tells it."""
-        begin = 0.0 if self._mapping.epoch is None else self._begin
-        return np.asarray(np.round((times - begin) * SECOND))
-
     def _stamps(self, times: Array) -> Stamps:
-        return self._nanoseconds(times).astype(np.int64) + (self._mapping.epoch or 0)
+        """Return times [s] as stamps, from the first on, or from 1970 where the log tells it."""
+        begin = 0.0 if self._mapping.epoch is None else self._begin
+        nanoseconds = np.asarray(np.round((times - begin) * SECOND))
+        return nanoseconds.astype(np.int64) + (self._mapping.epoch or 0)
 
     def _check(self, begin: float, end: float) -> None:
         """Raise InputError unless the first and the last time [s] give stamps."""

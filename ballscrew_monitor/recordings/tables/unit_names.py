@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Units in the names of columns, as they are spelt, and the words beside them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 import re
 
 from ballscrew_monitor.recordings.tables.quantities import NAMED_BY_MAPS, UNITS
@@ -113,6 +113,12 @@ def converted_unit(column: str, kind: str) -> tuple[str, float]:
     inside = (_plain(text) for text in BRACKETS.findall(column))
     texts = [*inside, *(text for text in _ends(column) if text not in _IN_BRACKETS)]
     return next((known[text] for text in texts if text in known), ('', 1.0))
+
+
+def unit_and_scale(column: str, kind: str) -> tuple[str, float]:
+    """Return the unit of a map that a name states, empty if none, and the scale to it [-]."""
+    unit = unit_of(column, kind)
+    return (unit, 1.0) if unit else converted_unit(column, kind)
 
 
 def factor_of(column: str, kind: str) -> str:
@@ -226,11 +232,9 @@ def _plain(text: str) -> str:
     return _PER.sub('/', _CAMEL_PER.sub('/', text.strip()).lower()).strip('/')
 
 
-def _spellings(units: Mapping[str, float]) -> dict[str, str]:
-    spelt = {_plain(unit): unit for unit in units}
-    return spelt | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
-
-
 _SPELLINGS = {
-    kind: _spellings(units) for kind, units in UNITS.items() if kind not in NAMED_BY_MAPS
+    kind: {_plain(unit): unit for unit in units}
+    | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
+    for kind, units in UNITS.items()
+    if kind not in NAMED_BY_MAPS
 }

@@ -102,7 +102,7 @@ def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
     others = dict.fromkeys(names, f'`sheet` in the map names {stated}' if stated else ANOTHER)
     for name, fewest in tried:
         cells = _texts(path, name)
-        if only or _holds_table(cells, fewest):
+        if only or (cells.width > 1 and holds_numbers(lines_of(cells), fewest)):
             cells.write_ipc(inputs['target'])
             del others[name]
             more = sum(_rows_alike(cells, path, other) for other in others)
@@ -131,11 +131,6 @@ def lines_of(cells: pl.DataFrame) -> list[Line]:
 
 def _held(names: Sequence[str]) -> str:
     return f'the workbook holds {listed(names)}: name one by `sheet` in the map'
-
-
-def _holds_table(cells: pl.DataFrame, fewest: int) -> bool:
-    """Return True if cells have so many rows of numbers."""
-    return cells.width > 1 and holds_numbers(lines_of(cells), fewest)
 
 
 def _texts(path: str, name: str) -> pl.DataFrame:
@@ -331,7 +326,10 @@ class _CellReader:
         elif kind == 'c':
             row, self._column = self._row, self._column + 1
             if 'r' in attributes:
-                row, self._column = _reference(attributes['r'])
+                match = re.fullmatch(f'({COLUMN})({ROW})', attributes['r'])  # such as B7
+                if not match:
+                    raise ValueError(f'a cell is called {short(attributes["r"])}')
+                row, self._column = int(match[2]), _column(match[1])
             self._place = row, self._column
         self._is_value = self._is_value or kind in VALUES
 
@@ -352,11 +350,3 @@ def _row(text: str) -> int:
     if not re.fullmatch(ROW, text):
         raise ValueError(f'a row is numbered {short(text)}')
     return int(text)
-
-
-def _reference(text: str) -> tuple[int, int]:
-    """Return row and column of a reference such as B7."""
-    match = re.fullmatch(f'({COLUMN})({ROW})', text)
-    if not match:
-        raise ValueError(f'a cell is called {short(text)}')
-    return int(match[2]), _column(match[1])

@@ -1,0 +1,178 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a first map says of the machine: screw, oil, lead, load, gear, motor and temperature."""
+
+import functools
+import math
+
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.recordings.tables import names
+from ballscrew_monitor.recordings.tables.first_map.draft import Draft
+from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.quantities import MOTION, RATED
+from ballscrew_monitor.recordings.tables.unit_names import unknown_unit, words_of
+from ballscrew_monitor.recordings.words import short
+from surrogate.surface import find_surface, Surface
+from surrogate.units import MILLI, TURN
+
+SCREW, OIL = 'nominal', 'iso_vg_68'
+TORQUE_CONSTANT = 0.1  # [N m/A]
+EFFICIENCY = 0.9
+TEMPERATURE = 40.0  # [degC]
+SAME_LEAD = 0.01  # part by which a lead out of a log may miss a usual one
+LEADS = (1e-3, 0.1)  # [m] of ball screws
+FORCE = (
+    '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
+    'accelerates the axis, count as load'
+)
+
+
+def state_machine(draft: Draft, name: str) -> None:
+    """Say of the machine of an axis what the head of the log does, assume or ask the rest."""
+    used = draft.used[name]
+    for key, value in (('screw', SCREW), ('oil', OIL)):
+        stated = _statement(draft, key) or 'the log does not say it'
+        draft.assume(f'{name}.{key}', value, f'{stated}; the shipped one')
+    _set_lead(draft, name)
+    _set_load(draft, name)
+    if 'gear' in draft.log.head.machine:
+        _ask_for_gear(draft, name)
+    else:
+        _assume_no_gear(draft, name)
+    if 'torque' in used and draft.unit(name, 'torque') == RATED:
+        _state_motor(draft, name, 'torque')
+    if 'temperature' not in used:
+        why = 'no column is the oil temperature of this axis'
+        _set_by_head(draft, name, 'temperature_degC', TEMPERATURE, why)
+    elif not names.is_of_the_screw(used['temperature']['column']):
+        column = used['temperature'].pop('column')
+        draft.assume(f'{name}.temperature.column', column, 'taken for that of the oil')
+
+
+def _statement(draft: Draft, key: str) -> str:
+    """Return the line of the head that says something of the machine, empty for none."""
+    stated = draft.log.head.machine.get(key)
+    return f'the head says {short(repr(stated.text))}' if stated else ''
+
+
+def _set_by_head(draft: Draft, name: str, key: str, usual: float, why: str) -> None:
+    """Take a number from the head if it is clear, ask if it is not, else assume the usual."""
+    stated = draft.log.head.machine.get(key)
+    if stated is None:
+        draft.assume(f'{name}.{key}', usual, why)
+    elif math.isfinite(stated.value) and len(draft.log.axes) == 1:
+        draft.assume(f'{name}.{key}', stated.value, _statement(draft, key))
+    else:
+        draft.ask(f'{name}.{key}', f': {_statement(draft, key)}')
+
+
+def _set_lead(draft: Draft, name: str) -> None:
+    """Assume the lead of the usual screw; where the log has another the map states it."""
+    usual, lead, place = _usual_lead(), _lead(draft, name), f'{name}.lead_mm'
+    stated = draft.log.head.machine.get('lead_mm')
+    if stated and not abs(lead * MILLI / stated.value - 1.0) > SAME_LEAD:
+        _set_by_head(draft, name, 'lead_mm', math.nan, '')
+    elif stated:
+        said = _statement(draft, 'lead_mm')
+        draft.ask(place, f': {said}, while position and speed agree at {lead * MILLI:.3g} mm')
+    elif math.isfinite(lead) and abs(lead / usual - 1.0) > SAME_LEAD:
+        position, speed = (draft.log.axes[name][kind].column for kind in ('position', 'speed'))
+        draft.ask(
+            place,
+            f': {position} and {speed} agree at {lead * MILLI:.3g} mm; behind a gear a scale '
+            'makes of either that of the screw',
+        )
+    else:
+        agrees = f'that of {SCREW}, at which position and speed agree'
+        why = agrees if math.isfinite(lead) else f'the log does not say it; that of {SCREW}'
+        draft.assume(place, float(f'{usual * MILLI:.6g}'), why)
+
+
+@functools.cache
+def _usual_lead() -> float:
+    """Return the lead [m] of the screw that is assumed."""
+    return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
+
+
+def _lead(draft: Draft, name: str) -> float:
+    """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""
+    way = draft.ways[name]
+    units = [draft.unit(name, kind) for kind in MOTION if kind in draft.used[name]]
+    if math.isnan(way) or not all(units):
+        return math.nan
+    speed, position = units
+    of_screw = speed in conversions.ROTARY_SPEED_UNITS
+    if of_screw == (position in conversions.ROTARY_POSITION_UNITS):
+        return math.nan
+    factor = way * conversions.POSITION_UNITS[position] / conversions.SPEED_UNITS[speed]
+    return TURN * factor if of_screw else TURN / factor
+
+
+def _set_load(draft: Draft, name: str) -> None:
+    """Let the load be that of a column, of the motor, or unknown for a reason."""
+    log, used, chosen = draft.log, draft.used[name], draft.log.axes[name]
+    if 'load' in used:
+        return
+    source = next((kind for kind in MOTOR if kind in used), '')
+    if source:
+        draft.assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
+        draft.assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
+        if source == 'current':
+            _state_motor(draft, name, source)
+        return
+    silent = [chosen[kind].column for kind in ('load', *MOTOR) if kind in chosen]
+    lost = [f'{", ".join(log.lost[name])} holds no number'] if log.lost[name] else []
+    still = [f'{", ".join(silent)} is always 0'] if silent else []
+    doubtful = [
+        f'{one.column} is in {unknown_unit(one.column, one.doubtful)}, which is no unit of a '
+        f'{one.doubtful}'
+        for one in log.named
+        if one.doubtful in ('load', *MOTOR)
+        and one.axis in ('', *(each.axis for each in chosen.values()))
+    ]
+    why = ', '.join([*lost, *still, *doubtful]) or 'no force, torque or current'
+    used['load'] = {'unknown': why}
+    draft.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
+
+
+def _state_motor(draft: Draft, name: str, kind: str) -> None:
+    """Assume what makes a torque of a current; ask for the rated torque of one in %."""
+    if draft.unit(name, kind) != RATED:
+        why = 'the log does not say it; it is on the plate of the motor'
+        _set_by_head(draft, name, 'torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+        return
+    draft.ask(
+        f'{name}.torque_rated_Nm',
+        f', the torque at the screw of 100 %: {draft.log.axes[name][kind].column} is in % of it, '
+        'and it is on the plate of the motor',
+    )
+
+
+def _ask_for_gear(draft: Draft, name: str) -> None:
+    """Let the map scale what may be of the motor where the head states a gear."""
+    used = draft.used[name]
+    if draft.log.head.machine['gear'].value == 1.0:
+        return
+    for kind in filter(used.__contains__, (*MOTION, *MOTOR)):
+        turns = draft.unit(name, kind) in (
+            *conversions.ROTARY_POSITION_UNITS,
+            *conversions.ROTARY_SPEED_UNITS,
+        )
+        makes_load = kind in MOTOR and used.get('load', {}).get('from') == kind
+        if turns or makes_load or 'load' not in used:
+            draft.ask(
+                f'{name}.{kind}.scale',
+                f', what makes {used[kind]["column"]} that of the screw, 1 if it is: '
+                f'{_statement(draft, "gear")}',
+            )
+
+
+def _assume_no_gear(draft: Draft, name: str) -> None:
+    """Assume of the turning speed of a motor, without a position, that the screw turns so."""
+    speed = draft.used[name].get('speed')
+    if speed is None or 'position' in draft.used[name] or 'scale' in speed:
+        return
+    turns = draft.unit(name, 'speed') in conversions.ROTARY_SPEED_UNITS
+    if turns and 'motor' in words_of(speed['column']):
+        why = f'{speed["column"]} is of the motor, taken to drive the screw without a gear'
+        draft.assume(f'{name}.speed.scale', 1.0, why)
