@@ -28,7 +28,7 @@ from surrogate.raceway.stated import NINE_OF_TEN, Roughness
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
 """RCS at the onset [-]."""
-VERSION = 'topography 4'
+VERSION = 'topography 5'
 """Of the law, among what results that it decides are kept by."""
 PLACES = 8
 """Places across a contact at which it is looked up [-]."""

@@ -196,20 +196,13 @@ def run_in(
     Summits persist, for what surrounds them is pressed too: nothing carries more than the hardness
     [Pa] above the mean pressure, so that summits that all yield have the area p/(p + H) which
     Pullen, Williamson, Proc. R. Soc. Lond. A 327 (1972) 159, measured on confined specimens. What
-    yields is levelled to the deformed surface, and what is not in contact rises evenly, up to that
-    surface, by the same volume. A second pass is elastic. `modulus` as `press` has it.
+    yields is levelled to the deformed surface, and all rises evenly by the same volume: what is
+    apart lifts the flat with it, so that the load decides its gap. A second pass is elastic.
+    `modulus` as `press` has it.
 
     """
     bound = hardness + mean_pressure
     contact = press(tile, modulus, mean_pressure, hardness=bound, tolerance=1e-3)
-    yields, apart = (contact.pressure >= bound) & (contact.gap < 0), contact.pressure <= 0
-    risen = np.minimum(contact.gap, _level(contact.gap[apart], -contact.gap[yields].sum()))
-    moved = np.select([yields, apart], [contact.gap, risen])
-    return replace(tile, heights=tile.heights + moved), contact
-
-
-def _level(gaps: Array, volume: float) -> float:
-    """Return the height [m] up to which a volume fills gaps [m], one a node, the lowest alike."""
-    rising = np.sort(np.append(gaps, 0.0))
-    filled = np.cumsum(rising) + np.arange(gaps.size, -1, -1) * rising
-    return float(np.interp(volume, filled, rising))
+    yields = (contact.pressure >= bound) & (contact.gap < 0)
+    levelled = np.where(yields, contact.gap, 0.0)
+    return replace(tile, heights=tile.heights + levelled - levelled.mean()), contact
