@@ -13,7 +13,7 @@ from ballscrew_monitor.node.raw_field import RawField
 from ballscrew_monitor.node.sources import InputName, LossCounter, NO_NUMBER, SourceCounter
 from ballscrew_monitor.recordings.bulk.layout import NoLayout
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options, publishers_on
+from ballscrew_monitor.settings.qos import input_qos, overriding_options, publishers_on
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
@@ -21,7 +21,7 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
-MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
+MOST = 400  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
 Taken = tuple[Any, dict[str, Any]]

@@ -21,7 +21,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
 
-DEPTH, MOST_DEPTH = 200, 100_000
+DEPTH, MOST_DEPTH = 1000, 100_000
 POLICIES = {
     'history': ('keep_last', 'keep_all'),
     'depth': (),

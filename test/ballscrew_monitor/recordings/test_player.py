@@ -321,7 +321,10 @@ def test_all_that_can_be_sent_of_it_reaches_whoever_listens(
 def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, nominal_bag, says):
     """A node that gets no processor time loses what does not fit into its queues."""
     states = node.states()
-    node.start('--params-file', PARAMS, use_sim_time='true')
+    topics = ('joint_states', 'axial_load')
+    queues = [f'qos_overrides./{name}.subscription.depth:=200' for name in topics]
+    given = [part for queue in queues for part in ('-p', queue)]
+    node.start('--params-file', PARAMS, *given, use_sim_time='true')
     node.until(node.knows_listeners, 'the node')
     options = ('--rate', 10, '--params', PARAMS)
     with play(node.domain, nominal_bag, *options, command=('-c', GATED)) as player:
