@@ -38,10 +38,10 @@ def parsed(text: bytes) -> Content:
     """
     try:
         return json.loads(text)
-    except json.JSONDecodeError as error:
-        if not error.msg.startswith('Extra data'):
+    except json.JSONDecodeError:
+        lines = [line for line in text.splitlines() if line.strip()]
+        if len(lines) < 2 or not _is_json(lines[0]):
             raise
-    lines = [line for line in text.splitlines() if line.strip()]
     records = []
     for number, line in enumerate(lines):
         try:
@@ -51,6 +51,14 @@ def parsed(text: bytes) -> Content:
                 raise Unreadable(f'line {number + 1} is no JSON: {error.msg}') from None
             records.append({})
     return records
+
+
+def _is_json(text: bytes) -> bool:
+    try:
+        json.loads(text)
+    except ValueError:
+        return False
+    return True
 
 
 def plain_table(content: Content) -> Content:
