@@ -55,7 +55,7 @@ def parsed(text: bytes) -> Content:
 
 
 def _is_json(line: bytes) -> bool:
-    with contextlib.suppress(json.JSONDecodeError):
+    with contextlib.suppress(ValueError):
         json.loads(line)
         return True
     return False

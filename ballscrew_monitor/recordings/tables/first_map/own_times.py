@@ -61,7 +61,7 @@ class OwnTimes:
 
     def _is_own(self, time: Named, one: Named) -> bool | None:
         """
-        Return whether a time is that of other columns, None for a time of none.
+        Return whether a time is that of other columns, None for one that no column has.
 
         It is one that runs over the times of the log, and differs from them. Where both may be
         times of the same rows, told again or from another zero, it is none, and where it may be
