@@ -35,8 +35,6 @@ class Burst(NamedTuple):
         """Return messages that were heard one by one."""
         arrivals = [arrival for arrival, _, _ in heard]
         topics = {arrival.topic.name: arrival.topic for arrival in arrivals}
-        # In the order of names: whichever came first, a reader then knows them from before.
-        topics = {name: topics[name] for name in sorted(topics)}
         places = {name: place for place, name in enumerate(topics)}
         return cls(
             topics=[*topics.values()],

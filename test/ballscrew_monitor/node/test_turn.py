@@ -294,17 +294,6 @@ def test_a_reader_follows_what_changes_between_turns():
     assert max(counts[3:]) == 0
 
 
-def test_a_reader_keeps_what_it_knows_of_topics_whichever_has_the_first_message():
-    inputs = Inputs()
-    reader = inputs.reader(Reading())
-    heard = [inputs.heard(SHARED, joints(x=1.0, y=2.0)), inputs.heard('/y/load', load(3.0))]
-    reader.turn(Burst.of(heard), Reading())
-    known = reader._slots
-    turn = reader.turn(Burst.of(heard[::-1]), Reading())
-    assert reader._slots is known
-    assert turn.events['value'].tolist() == [3.0, 1.0, 2.0]
-
-
 def test_each_axis_has_its_events_and_the_joints_that_these_name():
     inputs = Inputs()
     heard = [
