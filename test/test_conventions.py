@@ -109,7 +109,6 @@ THEMES = {
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
-    'ballscrew_monitor/recordings/tables/test_written_forms.py',
 }
 # Not asked of rosdep: numba, and the extras bags, report, xlsx, page, areal and dask.
 OPTIONAL = {
