@@ -153,18 +153,14 @@ def _windows(series: Mapping[Source, Series]) -> list[Window | None]:
     for place in range(int((min(speed[0][-1], torque[0][-1]) - begin) / WINDOW)):
         span = (begin + place * WINDOW, begin + (place + 1) * WINDOW)
         (time, speeds), (_, torques) = _between(speed, *span), _between(torque, *span)
-        windows.append(None)
-        if min(len(speeds), len(torques)) < FEWEST_SAMPLES:
-            continue
-        mean, signs, time = float(speeds.mean()), np.sign(speeds), time - time.mean()
-        drift = float(time @ speeds) / float(time @ time) * WINDOW
-        is_fast = abs(mean) >= SLOWEST and (signs == signs[0]).all()
-        if is_fast and abs(drift) <= STEADY * abs(mean):
+        window = None
+        if min(len(speeds), len(torques)) >= FEWEST_SAMPLES and _is_steady(time, speeds):
             heat = math.nan
             if Source.TEMPERATURE in series:  # the last one before, or the first
                 times, values = series[Source.TEMPERATURE]
                 heat = float(values[max(0, int(np.searchsorted(times, span[1])) - 1)])
-            windows[-1] = mean, float(torques.mean()), heat
+            window = float(speeds.mean()), float(torques.mean()), heat
+        windows.append(window)
     return windows
 
 
@@ -173,6 +169,16 @@ def _between(series: Series, begin: float, end: float) -> Series:
     time, value = series
     first, last = np.searchsorted(time, [begin, end])
     return time[first:last], value[first:last]
+
+
+def _is_steady(time: Array, speed: Array) -> bool:
+    mean = float(speed.mean())
+    time = time - time.mean()
+    drift = float(time @ speed) / float(time @ time) * WINDOW
+    signs = np.sign(speed)
+    return bool(
+        abs(mean) >= SLOWEST and (signs == signs[0]).all() and abs(drift) <= STEADY * abs(mean)
+    )
 
 
 def _bins(windows: list[Window]) -> Iterator[list[Window]]:
