@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a first map says of a log: columns, times, units, signs, machine, and what it asks."""
+"""Parts of a first map of a log: columns, times, units, signs, the machine and its questions."""

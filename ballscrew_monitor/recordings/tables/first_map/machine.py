@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a first map says of the machine: screw, oil, lead, load, gear, motor and temperature."""
+"""The machine in a first map: screw, oil, lead, load, gear, motor and temperature."""
 
 import functools
 import math

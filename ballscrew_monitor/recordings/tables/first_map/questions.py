@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a first map asks and notes of columns beside those of the axes, and of factors."""
+"""Questions and notes of a first map on columns beside those of the axes, and on factors."""
 
 import itertools
 from typing import Any

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where inputs of a first map are valid: by columns of marks, between jumps, and in gaps."""
+"""Validity of the inputs of a first map: by columns of marks, between jumps, and in gaps."""
 
 from ballscrew_monitor.recordings.tables.amounts import stays_in_gaps
 from ballscrew_monitor.recordings.tables.doubts import unclear_gaps
