@@ -123,7 +123,7 @@ def _with_unit(name: str, unit: str) -> str:
 
 
 def _seconds(texts: pl.Series) -> pl.Series:
-    """Return lengths of time [s], null where a text is none."""
+    """Return lengths of time [s], null for any other text."""
     total = pl.lit(0.0)
     for spelling, length in _PARTS.items():
         part = pl.col('text').str.extract(rf'(?i)([\d.,]+)\s*{spelling}(?:[^\p{{L}}]|$)')
