@@ -51,9 +51,7 @@ NUMERICAL = ('llvmlite', 'numba', 'numpy', 'pyyaml', 'scipy')
 COMPILED = (
     'surrogate.ehl.solver',
     'ballscrew_monitor.judge.many',
-    'ballscrew_monitor.recordings.bulk.ways',
     'ballscrew_monitor.health.collect',
-    'ballscrew_monitor.recordings.bulk.ways',
 )
 SOLVER_SOURCES = (
     'surrogate/ehl/kernels/*.py',
@@ -61,7 +59,6 @@ SOLVER_SOURCES = (
     'surrogate/surface/*.py',
     'surrogate/formulas/torque.py',
     f'{PACKAGE}/judge/*.py',
-    f'{PACKAGE}/recordings/bulk/*.py',
 )
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')

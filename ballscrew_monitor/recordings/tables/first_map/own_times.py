@@ -63,9 +63,9 @@ class OwnTimes:
         """
         Return whether a time is that of other columns, None for one that no column has.
 
-        It is one that runs over the times of the log, and differs from them. Where both may be
-        times of the same rows, told again or from another zero, it is none, and where it may be
-        either, False.
+        Such a time runs over the times of the log, and differs from them. It returns None where
+        both may be times of the same rows, told again or from another zero, and False where it may
+        be either.
 
         """
         log = self._log

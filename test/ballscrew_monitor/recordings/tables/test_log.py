@@ -13,8 +13,8 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import parameters_of
 from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome
+from ballscrew_monitor.recordings.tables import doubts, sources, times
 from ballscrew_monitor.recordings.tables import log as table_log
-from ballscrew_monitor.recordings.tables import series, sources, times
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -135,7 +135,7 @@ def test_a_table_and_the_bag_of_it_are_judged_to_the_same_bits(axes, rows, block
     columns = {'t': np.cumsum(steps), 'v': speed, 'F': load, 'M': torque}
     columns |= {'p': position, 'T': warmth}
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(series, 'fault_of_slope', lambda *_: '')  # places at random are no motion
+        patch.setattr(doubts, 'fault_of_slope', lambda *_: '')  # places at random are no motion
         path = write(folder, columns)
         bag = Path(folder) / 'bag'
         convert(path, map_of(axes), bag)
@@ -250,7 +250,7 @@ def test_each_run_is_judged_as_if_it_were_alone(axes, rows, runs, block):
     columns = {'t': np.cumsum(steps), 'v': speed, 'F': load, 'M': torque}
     columns |= {'p': position, 'T': warmth}
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(series, 'fault_of_slope', lambda *_: '')  # places at random are no motion
+        patch.setattr(doubts, 'fault_of_slope', lambda *_: '')  # places at random are no motion
         patch.setattr(times, 'even_rows', lambda *_: None)
         patch.setattr(sources, 'BLOCK', block)
         alone = TableLog(write(folder, columns), map_of(axes))
