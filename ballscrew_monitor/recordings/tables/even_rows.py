@@ -66,13 +66,13 @@ class EvenRows:
             row, times, columns = block if held is None else behind(held, block)
             ready = max(len(times) - KEPT, 0) // STRETCH * STRETCH
             if ready:
-                even = self.times(np.append(stamps, times))[len(stamps) :]
+                even = self.times(np.append(stamps, times))[slice(len(stamps), None)]
                 yield row, even[:ready], {name: one[:ready] for name, one in columns.items()}
                 stamps = np.append(stamps, times[:ready])[-KEPT:]
             held = rest((row, times, columns), ready)
         if held is not None and len(held[1]):
             even = self.times(np.append(stamps, held[1]))
-            yield held[0], even[len(stamps) :], held[2]
+            yield held[0], even[slice(len(stamps), None)], held[2]
 
     def places(self, stamps: Array) -> Array:
         """Return which row each is [-], those that miss counted, by stamps without a gap [s]."""

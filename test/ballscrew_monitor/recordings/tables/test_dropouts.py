@@ -34,7 +34,7 @@ def test_a_value_between_two_jumps_is_lost(value, noise, spans):
 def test_a_position_that_goes_on_while_it_is_lost_is_lost(value, rows, begin):
     place = 120.0 + np.cumsum(SPEED) / 100.0
     lost = np.zeros(len(TIME), bool)
-    lost[begin : begin + rows] = True
+    lost[slice(begin, begin + rows)] = True
     np.testing.assert_array_equal(dropped(np.where(lost, value, place)), lost)
 
 
