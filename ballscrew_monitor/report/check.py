@@ -54,6 +54,7 @@ Sheet = TypeVar('Sheet', Screw, Lubricant)
 Sheets = tuple[Screw, Lubricant]
 OIL = 'iso_vg_68'
 UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
+SAME_LEAD = 0.01  # part by which the lead that a log states may miss that of the sheet
 
 
 def check_command(args: argparse.Namespace, nominal: Path) -> int:
@@ -244,13 +245,22 @@ def _of_machine(first: Guess, sheets: Sheets | None, *, is_free: bool) -> Guess:
     """
     Return a guessed map that states screw, oil and lead of the sheets.
 
-    That of a free run takes no torque for a load: all of it is friction.
+    The map asks for a lead of which the log says another. That of a free run takes no torque for a
+    load: all of it is friction.
 
     """
-    stated = {}
+    stated: dict[str, Any] = {}
+    unstated = [*first.unstated]
     if sheets is not None:
         lead = float(f'{sheets[0].lead * MILLI:.6g}')
         stated = {'screw': sheets[0].name, 'oil': sheets[1].name, 'lead_mm': lead}
+        if abs(first.lead_mm / lead - 1.0) > SAME_LEAD:
+            stated['lead_mm'] = None
+            unstated += [
+                f'state axes.{name}.lead_mm in the map: the log says {first.lead_mm:g} mm, the '
+                f'sheet {sheets[0].name} {lead:g} mm'
+                for name in first.content['axes']
+            ]
     axes, assumed = {}, dict(first.content['assumed'])
     for name, columns in first.content['axes'].items():
         axes[name], known = columns | stated, [*stated]
@@ -262,7 +272,8 @@ def _of_machine(first: Guess, sheets: Sheets | None, *, is_free: bool) -> Guess:
             assumed[f'{name}.torque_uncertainty_Nm'] = uncertainty
         for key in known:
             assumed.pop(f'{name}.{key}', None)
-    return dataclasses.replace(first, content=first.content | {'axes': axes, 'assumed': assumed})
+    content = first.content | {'axes': axes, 'assumed': assumed}
+    return dataclasses.replace(first, content=content, unstated=tuple(unstated))
 
 
 def _free_runs(logs: Sequence[CheckedLog], sheets: Sheets, out: Path) -> list[FreeRun]:

@@ -85,13 +85,15 @@ def read_json(text: str | bytes) -> Any:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f'it is no JSON ({error})') from None
-    if _is_deeper(content, DEPTH):
+    if is_deeper(content, DEPTH):
         raise InputError(f'it nests deeper than {DEPTH}')
     return content
 
 
-def _is_deeper(content: Any, depth: int) -> bool:
-    parts = content.values() if isinstance(content, dict) else content
+def is_deeper(content: Any, depth: int) -> bool:
+    """Return True if lists and maps nest deeper than allowed."""
     if not isinstance(content, dict | list):
         return False
-    return depth == 0 or any(_is_deeper(part, depth - 1) for part in parts)
+    parts = content.values() if isinstance(content, dict) else content
+    held = (part for part in parts if isinstance(part, dict | list))
+    return depth == 0 or any(is_deeper(part, depth - 1) for part in held)

@@ -7,6 +7,7 @@ Such a text is decoded in memory, so that its size is bounded.
 
 """
 
+import gzip
 from pathlib import Path
 import re
 import zlib
@@ -61,30 +62,23 @@ def decoded(path: Path, head: bytes) -> bytes | None:
 def unpacked(path: Path, size: int = 0) -> bytes:
     """Return what is packed in a file by gzip, `size` bytes of it at least if it holds so much."""
     most = min(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
-    parts, length, reader = [], 0, zlib.decompressobj(zlib.MAX_WBITS | 16)
+    parts, length = [], 0
     try:
-        with path.open('rb') as stream:
-            while (block := reader.unconsumed_tail or stream.read(limits.MEGA)) and length <= most:
-                parts.append(reader.decompress(block, limits.MEGA))
-                length += len(parts[-1])
-                if reader.eof:
-                    rest = reader.unused_data or stream.read(limits.MEGA)
-                    if not rest.startswith(GZIP):
-                        break
-                    reader = zlib.decompressobj(zlib.MAX_WBITS | 16)
-                    parts.append(reader.decompress(rest, limits.MEGA))
-                    length += len(parts[-1])
+        with gzip.open(path) as stream:
+            while length <= most and (part := stream.read(limits.MEGA)):
+                parts.append(part)
+                length += len(part)
                 if size and length >= size:
                     return b''.join(parts)[:size]
-    except zlib.error as error:
+    except EOFError:
+        raise InputError(f'log {path} is cut off within what gzip packed: pack it again') from None
+    except (zlib.error, gzip.BadGzipFile) as error:
         raise InputError(f'log {path} cannot be unpacked by gzip: {first_line(error)}') from None
     if length > most:
         raise InputError(
             f'log {path} comes to more than {most // limits.MEGA} MB when it is unpacked: unpack '
             'it before'
         )
-    if not reader.eof:
-        raise InputError(f'log {path} is cut off within what gzip packed: pack it again')
     return b''.join(parts)
 
 

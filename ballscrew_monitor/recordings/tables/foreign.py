@@ -8,6 +8,7 @@ signal of other times than its neighbours has rows of its own.
 
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
@@ -162,6 +163,8 @@ def _of_its_kind(path: Path, kind: str) -> Iterator[None]:
 
 def _json(path: Path) -> Signals:
     content = json_layouts.parsed(path.read_bytes())
+    if limits.is_deeper(content, limits.DEPTH):
+        raise Unreadable(f'it nests deeper than {limits.DEPTH}')
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
@@ -319,8 +322,11 @@ def _xml(path: Path) -> Signals:
         elif tag == 'frameHeader':
             start = start or held.get('startTime', '')
         elif tag == 'rec':
-            rows.append({keys.get(name, name): value for name, value in held.items()})
-    return Signals(frame=pl.from_dicts(rows, infer_schema_length=None), start=start)
+            rows.append(dict(held))
+    counts = Counter(keys.values())
+    names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
+    frame = pl.from_dicts(rows, infer_schema_length=None).rename(names, strict=False)
+    return Signals(frame=frame, start=start)
 
 
 def _long(path: Path) -> Signals:

@@ -48,11 +48,13 @@ class Guess:
     A map as its content, and what is to be said about it.
 
     `unstated` says of each place of the map that is null why nothing is assumed there; `picture`
-    is what was found in the file.
+    is what was found in the file. `lead_mm` is that which the head of the log states [mm], NaN
+    without.
 
     """
 
     content: dict[str, Any]
+    lead_mm: float
     unstated: tuple[str, ...]
     notes: tuple[str, ...]
     picture: tuple[str, ...]
@@ -116,8 +118,10 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     stated |= {'order': draft.order} if draft.order else {}
     stated |= {'order': None} if 'order' in log.doubts else {}
     content |= {'time': stated, 'axes': draft.used, 'assumed': draft.assumed}
+    lead = log.head.machine.get('lead_mm')
     return Guess(
         content=content,
+        lead_mm=math.nan if lead is None else lead.value,
         unstated=tuple(draft.unstated),
         notes=tuple(draft.notes),
         picture=tuple(_picture(draft, times, stated)),

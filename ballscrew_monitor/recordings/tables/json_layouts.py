@@ -7,6 +7,7 @@ Each layout is an entry of a table. What none of them is stays as it is.
 
 """
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 import contextlib
 import json
@@ -17,6 +18,7 @@ from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.layouts import period_of, property_of
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS
+from ballscrew_monitor.recordings.words import short
 
 NAMES = ('columns', 'names', 'fields', 'headers', 'header', 'channels', 'signals')
 ROWS = ('data', 'values', 'rows', 'samples')
@@ -114,6 +116,7 @@ def _named_rows(content: Content) -> Content:
 
 def _columns(names: Sequence[str], rows: list[Any], content: Mapping[str, Any]) -> Content:
     """Return rows, or columns of the same number as the names, by their names."""
+    _check_names(names)
     count = len(names)
     are_rows = all(len(row) == count for row in rows)
     are_columns = len(rows) == count and len({*map(len, rows)}) == 1
@@ -149,14 +152,33 @@ def _channels(content: Content) -> Content:
         if not named or not all(isinstance(_first(one, VALUES), list) for one in named.values()):
             return None
         listed = [{'name': name} | one for name, one in named.items()]
-    table: dict[str, Any] = {}
-    for number, one in enumerate(listed):
-        name = _first(one, NAME) or f'channel {number + 1}'
+    names = [str(_first(one, NAME) or f'channel {at + 1}') for at, one in enumerate(listed)]
+    _check_names(names)
+    by_time: list[tuple[Any, list[int]]] = []  # times, and the numbers of their channels
+    for at, one in enumerate(listed):
         times = _first(one, TIMES)
-        if isinstance(times, list) and times not in table.values():
-            table['time' if 'time' not in table else f'{name} time'] = times
-        table[_with_unit(name, _first(one, UNIT))] = _first(one, VALUES)
+        alike = next((numbers for known, numbers in by_time if known == times), None)
+        if alike is None:
+            by_time.append((times, [at]))
+        else:
+            alike.append(at)
+    table: dict[str, Any] = {}
+    # A signal has the time before it, so one without any comes first.
+    for times, numbers in sorted(by_time, key=lambda group: isinstance(group[0], list)):
+        if isinstance(times, list):
+            table['time' if 'time' not in table else f'{names[numbers[0]]} time'] = times
+        for at in numbers:
+            table[_with_unit(names[at], _first(listed[at], UNIT))] = _first(listed[at], VALUES)
     return _beside(content) | table
+
+
+def _check_names(names: Sequence[str]) -> None:
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise Unreadable(
+                f'{count} of its signals are called {short(repr(name))}: give each a name of its '
+                'own'
+            )
 
 
 def _beside(content: Mapping[str, Any]) -> dict[str, Any]:

@@ -93,6 +93,15 @@ def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
     assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
 
 
+def test_a_lead_of_the_log_that_is_not_that_of_the_sheet_is_asked_for(tmp_path, capsys, says):
+    path = tmp_path / 'logs' / 'cut.csv'
+    write(path, SPEEDS)
+    path.write_text(f'Lead: 5 mm\n{path.read_text()}')
+    assert check(tmp_path / 'logs', tmp_path, *SHEETS, '--json') == 1
+    failure = json.loads(capsys.readouterr().out)['recordings']['cut.csv']['failure']
+    assert failure == says('another_lead')
+
+
 def test_a_log_that_contradicts_itself_and_a_stray_file_are_named_on_the_page(
     tmp_path, capsys, says
 ):

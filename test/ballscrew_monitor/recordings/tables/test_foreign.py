@@ -419,3 +419,10 @@ def test_events_beside_the_samples_are_no_samples(tmp_path):
     events = [{'t_s': 1.0, 'text': 'door'}] * 30
     path.write_text(json.dumps({'samples': records_of(), 'events': events}))
     assert {*TableLog(path, make_map(MAP_OF_RUNS)).promised.values()} == {COUNT}
+
+
+def test_json_that_nests_deeply_is_refused_before_it_is_a_table(tmp_path, refused):
+    path = tmp_path / 'log.json'
+    deep = '[' * 900 + ']' * 900
+    path.write_text('[' + ','.join([f'{{"t": 0.0, "x speed": {deep}}}'] * 3) + ']')
+    refused('deep_records', guess, path)

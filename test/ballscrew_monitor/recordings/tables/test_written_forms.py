@@ -12,6 +12,7 @@ import gzip
 import json
 import math
 
+from ballscrew_monitor.recordings.tables.codings import unpacked
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -298,6 +299,54 @@ def test_gzip_that_is_cut_off_or_holds_no_text_is_refused(tmp_path, refused):
     refused('cut_off', source_of, path)
     path.write_bytes(gzip.compress(json.dumps(RECORDS).encode()))
     refused('packed', source_of, path)
+
+
+@pytest.mark.parametrize('members', [1, 2, 3, 7, 40])
+@pytest.mark.parametrize('padding', [b'', bytes(512)])
+def test_all_members_of_a_gzip_file_are_read(members, padding, tmp_path):
+    """A logger that appends begins a new one each time."""
+    path, text = tmp_path / 'log.csv.gz', table().encode()
+    cuts = np.linspace(0, len(text), members + 1).astype(int)
+    parts = [text[slice(*pair)] for pair in zip(cuts, cuts[1:])]
+    path.write_bytes(b''.join(map(gzip.compress, parts)) + padding)
+    assert unpacked(path) == text
+    check(path)
+
+
+def test_each_channel_has_its_own_time_in_whatever_order_they_stand(tmp_path):
+    path = tmp_path / 'log.json'
+    early, late = ([1e3 * (1.7e9 + shift) + 10.0 * at for at in range(200)] for shift in (0, 2))
+    channels = [
+        {
+            'name': name,
+            'unit': unit,
+            'values': [scale * (at % 50) for at in range(200)],
+            'times': at,
+        }
+        for name, unit, scale, at in (
+            ('x position', 'mm', 1.0, early),
+            ('oil temperature', 'degC', 0.1, late),
+            ('x force', 'N', 10.0, early),
+        )
+    ]
+    path.write_text(json.dumps({'channels': channels}))
+    names = source_of(path).names()
+    times = [at for at, name in enumerate(names) if name.endswith('time')]
+    assert len(times) == 2
+    assert {*names[slice(*times)][1:]} == {'x position [mm]', 'x force [N]'}
+
+
+def test_signals_of_one_name_do_not_replace_each_other(tmp_path, refused):
+    path = tmp_path / 'log.json'
+    channels = [{'name': 'speed', 'axis': axis, 'unit': 'mm/s', 'values': [1.0]} for axis in 'XZ']
+    path.write_text(json.dumps({'channels': channels}))
+    refused('one_name', source_of, path)
+    path.write_text(json.dumps({'columns': ['t', 'v', 'v'], 'data': [[0.0, 1.0, 2.0]] * 4}))
+    refused('columns_of_one_name', source_of, path)
+    trace = tmp_path / 'trace.xml'
+    signals = ''.join(f'<dataSignal id="s{at}" name="X actual speed"/>' for at in (1, 2))
+    trace.write_text(f'<trace>{signals}<rec time="0" s1="1" s2="2"/></trace>')
+    assert source_of(trace).names() == ['time', 'X actual speed s1', 'X actual speed s2']
 
 
 @pytest.mark.parametrize('value', [0.0, 1.5, 1.79578e12, 1.7e9])
