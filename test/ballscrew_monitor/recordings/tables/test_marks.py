@@ -116,14 +116,14 @@ HEADS = {
 @pytest.mark.parametrize('suffix', ['csv', 'parquet'])
 def test_bad_values_are_not_known(kind, suffix, tmp_path):
     more, marked = HEADS[kind]
-    columns = {'Time [s]': TIME, 'X velocity [mm/s]': np.where(BAD, 0.0, SPEED)}
-    columns |= {'X force [N]': np.where(BAD, -5.0, 9.0 * SPEED), **more}
+    lost = {name: BAD if name in marked else np.zeros(300, bool) for name in ('x.speed', 'x.load')}
+    columns = {'Time [s]': TIME, 'X velocity [mm/s]': np.where(lost['x.speed'], 0.0, SPEED)}
+    columns |= {'X force [N]': np.where(lost['x.load'], -5.0, 9.0 * SPEED), **more}
     log = tmp_path / f'log.{suffix}'
     frame = pl.DataFrame(columns)
     frame.write_csv(log) if suffix == 'csv' else frame.write_parquet(log)
     found = read_by_guess(log)
-    for name in ('x.speed', 'x.load'):
-        expected = BAD if name in marked else np.zeros(300, bool)
+    for name, expected in lost.items():
         np.testing.assert_array_equal(np.isnan(found[name]), expected)
 
 
