@@ -201,7 +201,7 @@ def march(variation: Variation) -> tuple[SpeedRamp, int, int]:
     width = variation.width * a
     ny = good_length(math.ceil(variation.across * width / shortest))
     strip = strip_at(contact, variation.load, variation.place, width, ny)
-    repeated = periodic_across(surface, width).surface
+    repeated = periodic_across(surface, width)
     return (
         ramp_strip(strip, lubricant, speeds, repeated.heights, settings=settings, **ways),
         nx,

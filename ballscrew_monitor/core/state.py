@@ -45,14 +45,6 @@ class LoadDerivation:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class PositionSettings:
-    """How speeds follow from positions: window [ns], and the turn at which angles wrap [rad]."""
-
-    window: int
-    wrap: float = 0.0  # none
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class MonitorSettings:
     """
     What a monitor is told.
@@ -63,9 +55,10 @@ class MonitorSettings:
     of the clock, and that is less than `tick_period` [ns] ahead of the tick. Stamps more than
     `max_lag` [ns] behind their arrival are warned of. Samples whose amount is above that in
     `plausible` [SI] are refused, and with `one_source` those of an input that several publishers
-    send. With a `derivation` the load is derived from the motor torque, with `positions` the
-    samples of the speed are positions. Advice names another speed only if `speed_allowed`: the
-    process leaves it free.
+    send. With a `derivation` the load is derived from the motor torque. With a `position_window`
+    [ns] the samples of the speed are positions, whose slope over the window is the speed; angles
+    start over at `wrap` [rad], 0: they do not. Advice names another speed only if `speed_allowed`:
+    the process leaves it free.
 
     """
 
@@ -82,7 +75,8 @@ class MonitorSettings:
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
     fields: Mapping[Source, str] = dataclasses.field(default_factory=dict)
     derivation: LoadDerivation | None = None
-    positions: PositionSettings | None = None
+    position_window: int = 0
+    wrap: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -40,25 +40,6 @@ class Judged(NamedTuple):
     told: NDArray[np.intp]
 
 
-class Excursion(NamedTuple):
-    """What a memory knows of the last excursion and its begin [ns]."""
-
-    active: bool = False
-    number: int = 0
-    start: int = 0
-    clock_step: int = 0
-
-    @classmethod
-    def of(cls, memory: Any) -> 'Excursion':
-        """Return what a memory, an element of an array, knows."""
-        return cls(
-            bool(memory['event_active']),
-            int(memory['event_number']),
-            int(memory['event_start'][ACTIVE]),
-            int(memory['clock_step']),
-        )
-
-
 @functools.cache
 def compiled_step() -> Callable[..., tuple[int, int, int]]:
     """Return `step_many` compiled; raises ImportError without numba."""
@@ -94,7 +75,7 @@ class ManyJudge:
         self._arrays: tuple[NDArray[Any], ...] = ()  # memory and slopes
         self._settings: Any = None  # in force, and as an array
         self._numbers: Any = None
-        self._last = Excursion()  # at the last look for a leap
+        self._last = np.zeros(1, MEMORY)[0]  # at the last look for a leap
         self._event = 0  # number of the last one
 
     def _give_back(self) -> None:
@@ -117,7 +98,7 @@ class ManyJudge:
             memory = monitor.memory
             parts = memory, monitor.speeds, monitor.positions
             self._arrays = tuple(as_array(part) for part in parts)
-            self._event, self._last = memory.event_number, Excursion.of(self._arrays[0][0])
+            self._event, self._last = memory.event_number, self._arrays[0][0].copy()
             monitor.lend(self._give_back)
         if monitor.numbers is not self._settings:
             self._settings, self._numbers = monitor.numbers, as_array(monitor.numbers)
@@ -157,11 +138,12 @@ class ManyJudge:
 
     def _moved_to(self, memory: Any) -> int:
         """Return by how much the begin of an excursion has moved since the last look [ns]."""
-        before, self._last = self._last, Excursion.of(memory)
-        same = before.active and before.number == self._last.number
+        before, self._last = self._last, memory.copy()
+        same = before['event_active'] and before['event_number'] == memory['event_number']
         # Of a step of the node's clock its own event tells.
-        leaps = same and not before.clock_step
-        return self._last.start - before.start if leaps else 0
+        if not same or before['clock_step']:
+            return 0
+        return int(memory['event_start'][ACTIVE] - before['event_start'][ACTIVE])
 
 
 def prepare() -> None:

@@ -72,9 +72,9 @@ def settings_record(settings: MonitorSettings) -> Settings:
         numbers.derives, numbers.acceleration_window = True, settings.derivation.window
         for name in ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share'):
             setattr(numbers, name, float(getattr(settings.derivation, name)))
-    if settings.positions is not None:
-        numbers.positions, numbers.position_window = True, settings.positions.window
-        numbers.wrap = float(settings.positions.wrap)
+    if settings.position_window:
+        numbers.positions, numbers.position_window = True, settings.position_window
+        numbers.wrap = float(settings.wrap)
     return numbers
 
 

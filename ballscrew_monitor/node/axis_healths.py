@@ -126,18 +126,15 @@ class AxisHealths:
 
     def _status(self, name: str) -> DiagnosticStatus:
         assert self._worker is not None
+        held = CLOCK_SET if self._held else ''
         return health_status(
             self._node.get_fully_qualified_name(),
             name,
             self._publishers[name].surface.screw_name,
             self._last.get(name),
             self._policy(name),
-            problem=self._gatherers[name].defect or self._worker.problem or self._why_held,
+            problem=self._gatherers[name].defect or self._worker.problem or held,
         )
-
-    @property
-    def _why_held(self) -> str:
-        return CLOCK_SET if self._held else ''
 
     def _look(self) -> None:
         """Hand over what is due, and publish what has been assessed."""

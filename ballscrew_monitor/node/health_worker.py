@@ -160,7 +160,15 @@ class HealthWorker:
             if job is None:
                 break
             try:
-                self._do(job)
+                today = day_of(job.now)
+                job.keeper.gather(job.found, today)
+                self.take_store()
+                job.keeper.keep(today)
+                if job.assesses and not self._ending:
+                    health = job.keeper.assess(job.now, job.surface, job.settings)
+                    surface_id = job.surface.base_sha256[:SURFACE_DIGITS]
+                    message = health_message(health, surface_id=surface_id, policy=job.policy)
+                    self.done.append((health, message))
                 self.problem = ''
             except (InputError, sqlite3.Error, OSError) as error:
                 self.problem = f'{self.store.file} cannot be used, {error}'
@@ -170,14 +178,3 @@ class HealthWorker:
                 )
         with self.store.lock:
             self.store.close()
-
-    def _do(self, job: Job) -> None:
-        today = day_of(job.now)
-        job.keeper.gather(job.found, today)
-        self.take_store()
-        job.keeper.keep(today)
-        if job.assesses and not self._ending:
-            health = job.keeper.assess(job.now, job.surface, job.settings)
-            surface_id = job.surface.base_sha256[:SURFACE_DIGITS]
-            message = health_message(health, surface_id=surface_id, policy=job.policy)
-            self.done.append((health, message))

@@ -376,7 +376,13 @@ class Intake(Waitable):
             if self.is_compiled:
                 self._hand_over_burst(Burst.of(heard))
             else:
-                self._hand_over_each(heard)
+                turn = ordered([event for one in heard for event in self._judged(one)])
+                self._recorder.hear(heard)
+                self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
+                self._recorder.flush()  # whatever becomes of the node with these events
+                for axis, event in turn:
+                    self._take(axis, event)
+                self._recorder.flush()
             heard.clear()
         if step:
             now = self.now
@@ -384,15 +390,6 @@ class Intake(Waitable):
             for axis in self._axes:
                 self._guard(axis, 'a step of the clock', axis.monitor.set_clock, now - step, now)
             self._stepped(step, now)
-
-    def _hand_over_each(self, heard: list[Heard]) -> None:
-        turn = ordered([event for one in heard for event in self._judged(one)])
-        self._recorder.hear(heard)
-        self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
-        self._recorder.flush()  # whatever becomes of the node with these events
-        for axis, event in turn:
-            self._take(axis, event)
-        self._recorder.flush()
 
     def _hand_over_burst(self, burst: Burst) -> None:
         turn = self._turns.turn(burst, self._reading)

@@ -57,27 +57,26 @@ class ParameterStore:
     def _check(self, changed: list[Parameter]) -> SetParametersResult:
         try:
             for parameter in changed:
-                self._check_one(parameter)
+                name, row = parameter.name, self._rows.get(parameter.name)
+                if row is None and name != SIMULATED:
+                    continue
+                value = _plain(parameter.value)
+                if row is not None:
+                    row.check(name, value)
+                if self.locked and (row is None or row.change is Change.UNCONFIGURED):
+                    raise InputError(
+                        f'parameter {name} changes only while the node is unconfigured, clean it '
+                        'up first'
+                    )
+                if self.locked and name in self.ceilings and value > self.ceilings[name]:
+                    raise InputError(
+                        f'parameter {name} is {value:g} s, while the node is configured at most '
+                        f'{self.ceilings[name]:g} s, which its publisher promises: clean it up '
+                        'first'
+                    )
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
-
-    def _check_one(self, parameter: Parameter) -> None:
-        name, row = parameter.name, self._rows.get(parameter.name)
-        if row is None and name != SIMULATED:
-            return
-        value = _plain(parameter.value)
-        if row is not None:
-            row.check(name, value)
-        if self.locked and (row is None or row.change is Change.UNCONFIGURED):
-            raise InputError(
-                f'parameter {name} changes only while the node is unconfigured, clean it up first'
-            )
-        if self.locked and name in self.ceilings and value > self.ceilings[name]:
-            raise InputError(
-                f'parameter {name} is {value:g} s, while the node is configured at most '
-                f'{self.ceilings[name]:g} s, which its publisher promises: clean it up first'
-            )
 
     def _take(self, changed: list[Parameter]) -> None:
         known = [parameter for parameter in changed if parameter.name in self._rows]

@@ -65,10 +65,10 @@ class RawField:
             if form.size == size and form.spans(data) == form.content:
                 break
         else:
-            known = self._form(data)
-            if known is None:
-                return None
-            form = known
+            try:
+                form = self._form(data)
+            except (struct.error, UnicodeDecodeError, ValueError):
+                return None  # of a message that these steps do not pass
             self._forms = [form, *self._forms[: MOST_FORMS - 1]]
         if form.number < 0:
             return None
@@ -78,14 +78,7 @@ class RawField:
         seconds, nanoseconds = _STAMP.unpack_from(data, form.stamp)
         return number, seconds * SECOND + nanoseconds
 
-    def _form(self, data: bytes) -> _Form | None:
-        """Return the form of a message, None of one that these steps do not pass."""
-        try:
-            return self._walk(data)
-        except (struct.error, UnicodeDecodeError, ValueError):
-            return None
-
-    def _walk(self, data: bytes) -> _Form:
+    def _form(self, data: bytes) -> _Form:
         spans = [slice(0, HEAD)]
         at, place, number, stamp = HEAD, -1, -1, -1
         for kind, size, count, most, wanted in self._steps:

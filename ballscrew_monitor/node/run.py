@@ -132,9 +132,11 @@ def _of_file(path: str, node: str) -> dict[str, Any]:
         sections = parameters.sections(path)
     except InputError:
         return {}
+    parts = {'*': '/[^/]+', '**': '(?:/[^/]+)*'}  # one part of a name, any number of them
     setting: dict[str, Any] = {}
     for pattern, values in _patterns(sections):
-        if NAME in values and _matches(pattern, node):
+        form = ''.join(parts.get(part, f'/{re.escape(part)}') for part in pattern[1:].split('/'))
+        if NAME in values and re.fullmatch(form, node):
             setting = {NAME: values[NAME] is True}
     return setting
 
@@ -148,10 +150,3 @@ def _patterns(
             yield prefix, inner
         elif isinstance(inner, dict):
             yield from _patterns(inner, f'{prefix}/{str(key).strip("/")}')
-
-
-def _matches(pattern: str, node: str) -> bool:
-    """Return True if a pattern means the node; `*` stands for one part of a name, `**` for any."""
-    parts = {'*': '/[^/]+', '**': '(?:/[^/]+)*'}
-    form = ''.join(parts.get(part, f'/{re.escape(part)}') for part in pattern[1:].split('/'))
-    return re.fullmatch(form, node) is not None

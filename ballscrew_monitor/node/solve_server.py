@@ -27,7 +27,7 @@ from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
-from ballscrew_monitor.node.solver import Done, End, Job, MOST_WAITING, Solver, Step
+from ballscrew_monitor.node.solver import End, Job, MOST_WAITING, Solver, Step
 from ballscrew_monitor.settings.parameters import REFUSALS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
@@ -98,7 +98,8 @@ class SolveServer:
         """Stop all solves; their goals end with the reason."""
         self.solver.close()
         for goal in list(self._goals.values()):
-            self._finish(goal, Done(job=goal.job, end=End.FAILED, sentence=reason))
+            goal.job.end, goal.job.sentence = End.FAILED, reason
+            self._finish(goal)
         self._rest()
 
     def solve(self, axis: AxisPublisher, row: Row) -> None:
@@ -148,8 +149,8 @@ class SolveServer:
             taken_back = goal.handle is not None and goal.handle.is_cancel_requested
             if taken_back and math.isnan(goal.job.cancelled):
                 self.solver.cancel(goal.job, now)
-        for done in self.solver.poll(now):
-            self._finish(self._goals[done.job], done)
+        for job in self.solver.poll(now):
+            self._finish(self._goals[job])
         for goal in self._goals.values():
             self._tell(goal, now)
         if not self._goals:
@@ -169,10 +170,10 @@ class SolveServer:
         message = feedback_message(goal.job.step, goal.row)
         goal.handle.publish_feedback(message)
 
-    def _finish(self, goal: _Goal, done: Done) -> None:
+    def _finish(self, goal: _Goal) -> None:
         del self._goals[goal.job]
-        result = result_message(goal.axis, goal.row, done)
-        end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
+        result = result_message(goal.axis, goal.row, goal.job)
+        end = End.FAILED if goal.job.end is End.SOLVED and not result.success else goal.job.end
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
         else:
@@ -181,12 +182,12 @@ class SolveServer:
                 f'axis {goal.axis.name}: solved where it dwells: {sentence}'
             )
 
-    def _answer(self, handle: ServerGoalHandle, result: Any, end: End) -> None:
+    def _answer(self, handle: ServerGoalHandle, result: Any, end: End | None) -> None:
         """Hand the answer of a goal to the executor."""
         self._server.notify_execute(handle, functools.partial(_end_goal, result=result, end=end))
 
 
-def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
+def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End | None) -> Any:
     if end is End.SOLVED:
         handle.succeed()
     elif end is End.CANCELLED and handle.is_cancel_requested:
@@ -207,11 +208,6 @@ def requested_point(request: Any, axis: AxisPublisher) -> Row | str:
         return 'speed, axial load and temperature of the point must be finite'
     if row.speed == 0.0:
         return 'the speed of the point is 0 rad/s, a solve needs motion'
-    return _beyond(row) or row
-
-
-def _beyond(row: Row) -> str:
-    """Return what of a point no screw has, and what is allowed; empty: nothing."""
     if not SLOWEST <= abs(row.speed) <= SPEED * RPM:
         allowed = f'{SLOWEST:g} to {SPEED * RPM:g} rad/s in either direction'
         return f'the speed of the point is {row.speed:g} rad/s, allowed is {allowed}'
@@ -223,7 +219,7 @@ def _beyond(row: Row) -> str:
         return (
             f'the temperature of the point is {given}, allowed is {COLDEST:g} to {HOTTEST:g} degC'
         )
-    return ''
+    return row
 
 
 def feedback_message(step: Step, row: Row) -> Any:
@@ -249,16 +245,17 @@ def empty_result(status: str) -> Any:
     return result
 
 
-def result_message(axis: AxisPublisher, row: Row, done: Done) -> Any:
+def result_message(axis: AxisPublisher, row: Row, job: Job) -> Any:
     """Return the result of a solve that has ended; one that is worth it corrects the surface."""
-    result = empty_result(_status(done))
-    result.wall_time = float(done.wall_time)
+    status = job.sentence or str(job.result.get('status', ''))
+    result = empty_result('cancelled' if job.end is End.CANCELLED else status)
+    result.wall_time = float(job.wall_time)
     answer = axis.answer(row)
     reason = reason_of(answer, axis.surface)
     fill_result(result.surface, answer, TIERS[axis.surface.tier], reason)
-    if done.end is End.SOLVED and done.result['converged']:
+    if job.end is End.SOLVED and job.result['converged']:
         load = solved_at(row).opposing_load
-        full = read_solved(done.result, opposing_load=load, lead=axis.surface.lead)
+        full = read_solved(job.result, opposing_load=load, lead=axis.surface.lead)
         solved = with_numbers(answer, full, rcs_limit=axis.settings.limits.rcs)
         fill_result(result.full, solved, PointResult.TIER_FULL, '')
         _fill_comparison(result, compare(full, answer))
@@ -282,9 +279,3 @@ def _fill_comparison(result: Any, comparison: Comparison) -> None:
     result.efficiency_difference = float(comparison.efficiency)
     result.rcs_difference = float(comparison.rcs)
     result.within_stated_error = comparison.within_stated_error
-
-
-def _status(done: Done) -> str:
-    if done.end is End.CANCELLED:
-        return 'cancelled'
-    return done.sentence or str(done.result.get('status', ''))

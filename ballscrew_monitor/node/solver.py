@@ -57,21 +57,19 @@ class Step:
 
 @dataclasses.dataclass(kw_only=True, eq=False, slots=True)
 class Job:
-    """A solve that was asked for: the request, and the time [s] that it may take once begun."""
+    """
+    A solve that was asked for: the request, and the time [s] that it may take once begun.
+
+    With its `end` it has the result of the worker or a sentence, and its `wall_time` [s].
+
+    """
 
     request: dict[str, Any]
     timeout: float
     step: Step = Step(stage='waiting')
     began: float = NAN
     cancelled: float = NAN
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Done:
-    """A solve that has ended: the result of the worker, or a sentence; `wall_time` [s]."""
-
-    job: Job
-    end: End
+    end: End | None = None
     result: dict[str, Any] = dataclasses.field(default_factory=dict)
     sentence: str = ''
     wall_time: float = NAN
@@ -120,14 +118,12 @@ class Solver:
         self._job = None
         self._pool.close()
 
-    def poll(self, now: float) -> list[Done]:
+    def poll(self, now: float) -> list[Job]:
         """Move on at `now` [s]; return the solves that have ended."""
-        done = [
-            Done(job=job, end=End.CANCELLED)
-            for job in self._waiting
-            if not math.isnan(job.cancelled)
-        ]
-        self._waiting = deque(job for job in self._waiting if math.isnan(job.cancelled))
+        done = [job for job in self._waiting if not math.isnan(job.cancelled)]
+        for job in done:
+            job.end = End.CANCELLED
+        self._waiting = deque(job for job in self._waiting if job.end is None)
         if self._job is not None:
             done += self._listen(self._job, now) or self._overdue(self._job, now)
         if self._job is None and self._waiting:
@@ -142,7 +138,7 @@ class Solver:
         """Return the name of the solve at work."""
         return f'{self._count}'
 
-    def _listen(self, job: Job, now: float) -> list[Done]:
+    def _listen(self, job: Job, now: float) -> list[Job]:
         """Take what is heard of the solve at work; return its end, if that has come."""
         for name, frame in self._pool.wait(0.0):
             if name != self._name:
@@ -153,21 +149,20 @@ class Solver:
                 return self._end(job, now, frame)
         return []
 
-    def _end(self, job: Job, now: float, frame: Frame) -> list[Done]:
+    def _end(self, job: Job, now: float, frame: Frame) -> list[Job]:
         """End the solve at work, which was taken back perhaps, with the last frame of it."""
-        self._job, end, result = None, End.FAILED, frame.get('result')
+        self._job, job.wall_time = None, now - job.began
         if not math.isnan(job.cancelled):
-            result, end, sentence = None, End.CANCELLED, ''
-        elif result is not None:
-            end, sentence = End.SOLVED, ''
+            job.end = End.CANCELLED
+        elif frame.get('result') is not None:
+            job.end, job.result = End.SOLVED, frame['result']
         elif 'lost' in frame:
-            sentence = f'the process of the solve {frame["lost"]}'
+            job.end, job.sentence = End.FAILED, f'the process of the solve {frame["lost"]}'
         else:
-            sentence = frame['sentence']
-        spent = now - job.began
-        return [Done(job=job, end=end, result=result or {}, sentence=sentence, wall_time=spent)]
+            job.end, job.sentence = End.FAILED, frame['sentence']
+        return [job]
 
-    def _overdue(self, job: Job, now: float) -> list[Done]:
+    def _overdue(self, job: Job, now: float) -> list[Job]:
         """End a solve that was taken back and did not stop, or that takes too long."""
         if not (now - job.cancelled >= GRACE or now - job.began >= job.timeout):
             return []

@@ -93,7 +93,10 @@ class Topic:
         """Return what finds the number of a reader in bytes, None if nothing does."""
         known = len(self.fields)
         for _, source in self.readers[known:]:
-            self.fields.append(_raw_field(source))
+            try:
+                self.fields.append(RawField(source))
+            except NoLayout:
+                self.fields.append(None)
         return self.fields[reader]
 
     def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
@@ -135,13 +138,6 @@ class Topic:
                 for _, info in messages:
                     info[NUMBER] = NO_NUMBER
         return messages
-
-
-def _raw_field(source: Input) -> RawField | None:
-    try:
-        return RawField(source)
-    except NoLayout:
-        return None
 
 
 class Apart(CallbackGroup):

@@ -128,7 +128,11 @@ class TurnReader:
         found, odd = _find(burst, slots, reading.ahead)
         events = _samples(found, slots)
         for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
-            events[at] = _record(_read_again(found, at, slots))
+            _, slot, value, stamp, now, missing, most_ahead = (one[at].item() for one in found)
+            lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot].source
+            events[at] = _record(
+                source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
+            )
         axes = np.array([self._numbers[slot.axis.name] for slot in slots.slots], np.int64)
         numbers, joints = axes[found.slot], dict[int, OtherJoints]()
         if len(odd):
@@ -213,13 +217,6 @@ def _samples(found: _Found, slots: _Slots) -> Events:
         value=value,
         stamp_source=np.where(stamp == 0, StampSource.RECEIVE, StampSource.HEADER),
     )
-
-
-def _read_again(found: _Found, at: int, slots: _Slots) -> InputSample | Refusal:
-    """Return what an input makes of a number that gives no sample."""
-    _, slot, value, stamp, now, missing, most_ahead = (column[at].item() for column in found)
-    lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot].source
-    return source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
 
 
 def _record(event: InputSample | Refusal) -> Events:

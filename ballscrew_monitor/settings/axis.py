@@ -14,7 +14,7 @@ from ballscrew_monitor.core.conversions import nanoseconds, POSITION_UNITS, Scal
 from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.settings.parameters import is_configured, MOTOR_TORQUE
@@ -208,12 +208,10 @@ def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
 
 def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> MonitorSettings:
     """Return the settings of the monitor; some limits are in parts of those of the surface."""
-    prefix, unit, positions = f'{name}.limits.', values[f'{name}.speed.unit'], None
+    prefix, unit, window, wrap = f'{name}.limits.', values[f'{name}.speed.unit'], 0, 0.0
     if unit in POSITION_UNITS:
-        positions = PositionSettings(
-            window=nanoseconds(values[f'{name}.speed.window']),
-            wrap=values[f'{name}.speed.wrap'] * conversions.screw_turn(unit, lead=surface.lead),
-        )
+        window = nanoseconds(values[f'{name}.speed.window'])
+        wrap = values[f'{name}.speed.wrap'] * conversions.screw_turn(unit, lead=surface.lead)
     largest = {
         Source.SPEED: surface.speed_range[1],
         Source.LOAD: max(map(abs, surface.load_range)),
@@ -247,7 +245,8 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         },
         fields={source: values[f'{name}.{source.name.lower()}.field'] for source in Source},
         derivation=derivation_of(name, values),
-        positions=positions,
+        position_window=window,
+        wrap=wrap,
     )
 
 

@@ -129,7 +129,7 @@ def running_tiles(
     shortest = max(contact.resolved_wave, shortest)
     size, shape = tile_size(contact, shortest=shortest)
     modulus, tiles = 0.5 * contact.reduced_modulus, []
-    for draw in draws or range(_tiles(shape)):
+    for draw in draws or range(TILES if shape[0] < LONG * NODES else LONG_TILES):
         drawn = (
             draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field)
             for field, waves in fields.items()
@@ -150,11 +150,6 @@ def tile_size(
     rows = 2 * next_fast_len(math.ceil(0.5 * NODES * length / shortest), real=True)
     columns = 2 * next_fast_len(math.ceil(0.25 * NODES * length / shortest), real=True)
     return (length, WIDTH / LENGTH * length), (rows, columns)
-
-
-def _tiles(shape: tuple[int, int]) -> int:
-    """Return the number of tiles whose mean is taken [-]."""
-    return TILES if shape[0] < LONG * NODES else LONG_TILES
 
 
 def _cut(tile: Tile, modulus: float, pressure: float, hardness: float) -> Tile:

@@ -21,7 +21,7 @@ from surrogate.ehl.moving.line import scale_strip
 from surrogate.ehl.moving.march import marching_domain
 from surrogate.ehl.scales import scale_contact, ScaledContact
 from surrogate.raceway.fractal import FractalSurface
-from surrogate.raceway.periodic import periodic_across
+from surrogate.raceway.periodic import periodic_across, turn_and_loss
 
 TRANSITS, PLACES = 8.0, 4
 """Transits of the contact, and places over which they are shared, of a case without them [-]."""
@@ -41,16 +41,17 @@ def march_case(case: ContactCase) -> tuple[MovingSolution, FractalSurface]:
     if case.strip is not None:
         strip, speed = case_strip(case, case.strip), case.entrainment_speed
         periodic = periodic_across(surface, strip.width)
+        turn, lost = turn_and_loss(surface, periodic)
         LOG.info(
             'strip: to repeat across it the waves are turned by %.2g deg rms; %.2g %% of their '
             'mean square is lost',
-            math.degrees(periodic.turn),
-            100 * periodic.lost,
+            math.degrees(turn),
+            100 * lost,
         )
-        heights = periodic.surface.heights
+        heights = periodic.heights
         scaled = scale_strip(strip, case.lubricant, speed, heights)
         settings = march_settings(case, scaled)
-        _check_nodes(settings, scaled, strip.width / strip.columns, periodic.surface)
+        _check_nodes(settings, scaled, strip.width / strip.columns, periodic)
         solution = march_strip(
             strip, case.lubricant, speed, heights, transits=transits, settings=settings
         )

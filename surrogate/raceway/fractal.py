@@ -21,7 +21,6 @@ from surrogate.files.datasheet import Checked, count, quantity
 from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane
 
 Array = NDArray[np.float64]
-Waves = NDArray[np.complex128]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
 
 DIMENSIONS = (2.01, 2.99)
@@ -51,35 +50,6 @@ class PublishedRoughness(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Strip:
-    """
-    A sum of plane waves at the places `y` [m] across the track, at any place along it.
-
-    The part of each wave along y is worked out once, so that each block of rows that rolls
-    through a contact costs one matrix product. Heights are positive out of the material.
-
-    Wave numbers along the track [rad/m]; `weight` [m], amplitude and phase; `across` [-], shape
-    (waves, ny); plane (offset [m], slopes [-]) and scale [-] as in
-    `surrogate.raceway.patch.Raceway`.
-
-    """
-
-    y: Array
-    wave_number_x: Array
-    weight: Waves
-    across: Waves
-    plane: Plane
-    scale: float
-
-    def rows(self, x: ArrayLike) -> Array:
-        """Return heights [m], shape (nx, ny), at the places `x` [m] along the track."""
-        x = np.atleast_1d(np.asarray(x, dtype=float))
-        along = np.exp(1j * np.outer(x, self.wave_number_x))
-        waves = np.sum(self.weight.real) - ((along * self.weight) @ self.across).real
-        return np.asarray(self.scale * (waves - on_plane(self.plane, x, self.y)))
-
-
-@dataclass(frozen=True, kw_only=True)
 class FractalSurface:
     """
     Sum of plane waves less a plane: z = scale (sum a [cos phi - cos(kx x + ky y + phi)] - plane).
@@ -104,19 +74,11 @@ class FractalSurface:
     def heights(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Return heights [m], shape (nx, ny), on the grid of `x` and `y` [m] (see `grid_axes`)."""
         x, y = grid_axes(x, y)
-        return self.strip(y).rows(x)
-
-    def strip(self, y: ArrayLike) -> Strip:
-        """Return the strip at the places `y` [m], which gives heights block by block along x."""
-        y = np.atleast_1d(np.asarray(y, dtype=float))
-        return Strip(
-            y=y,
-            wave_number_x=self.wave_number_x,
-            weight=self.amplitude * np.exp(1j * self.phase),
-            across=np.exp(1j * np.outer(self.wave_number_y, y)),
-            plane=self.plane,
-            scale=self.scale,
-        )
+        along = np.exp(1j * np.outer(x, self.wave_number_x))
+        across = np.exp(1j * np.outer(self.wave_number_y, y))
+        weight = self.amplitude * np.exp(1j * self.phase)
+        waves = np.sum(weight.real) - ((along * weight) @ across).real
+        return np.asarray(self.scale * (waves - on_plane(self.plane, x, y)))
 
 
 def fractal_surface(
@@ -189,17 +151,6 @@ def wave_directions(ridges: int, lay: Lay, fan: float = LAY_SPREAD) -> Array:
         return math.pi * np.arange(1, ridges + 1) / ridges
     centre = 0.5 * math.pi if lay == 'longitudinal' else 0.0
     return centre + fan * (np.arange(ridges) - 0.5 * (ridges - 1)) / max(ridges - 1, 1)
-
-
-def theoretical_rms(roughness: PublishedRoughness) -> float:
-    """
-    Return Rq of the fractal surface [m], the mean over draws.
-
-    Rq^2 = 0.5 ln g L^2 (G/L)^(2(D-2)) [1 - g^(-2(3-D)(n_max+1))]/[1 - g^(-2(3-D))].
-
-    """
-    _, amplitude = wave_spectrum(roughness)
-    return math.sqrt(0.5 * roughness.ridges * float(np.sum(amplitude**2)))
 
 
 def shifted(surface: FractalSurface, x: float, y: float) -> FractalSurface:

@@ -9,7 +9,7 @@ to move much further than the one across and stays, so that they are not turned.
 
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -23,26 +23,7 @@ STEEPEST = 2.0
 """Largest wave number across over that along the track of a wave that keeps its length [-]."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PeriodicSurface:
-    """
-    A surface that is periodic across the track, and what that has cost.
-
-    Period `width` [m]; rms over the waves, each by its mean square height, of the turn [rad] and
-    of the relative change of length [-]; the largest of the latter [-]; share of the mean square
-    height in waves that are constant over the strip and lost [-].
-
-    """
-
-    surface: FractalSurface
-    width: float
-    turn: float
-    length_change: float
-    largest_length_change: float
-    lost: float
-
-
-def periodic_across(surface: FractalSurface, width: float) -> PeriodicSurface:
+def periodic_across(surface: FractalSurface, width: float) -> FractalSurface:
     """
     Return a surface with period `width` [m] along y; amplitudes and phases stay.
 
@@ -61,28 +42,23 @@ def periodic_across(surface: FractalSurface, width: float) -> PeriodicSurface:
     kept = np.copysign(np.sqrt(np.maximum(number**2 - snapped**2, 0.0)), along)
     near = np.abs(across) <= STEEPEST * np.abs(along)
     adjusted = np.where(near & (np.abs(snapped) <= number), kept, along)
-    old, new = np.hypot(surface.wave_number_x, surface.wave_number_y), np.hypot(adjusted, snapped)
-    alive = new > 1e-9 * old
+    return replace(surface, wave_number_x=adjusted, wave_number_y=snapped)
+
+
+def turn_and_loss(surface: FractalSurface, periodic: FractalSurface) -> tuple[float, float]:
+    """
+    Return what the period of a surface has cost: turn of its waves [rad], share of them lost [-].
+
+    The turn is the rms over the waves by their mean square height; the share is that of this
+    height in waves that have become constant over the strip.
+
+    """
+    along, across = surface.wave_number_x, surface.wave_number_y
+    new_along, new_across = periodic.wave_number_x, periodic.wave_number_y
+    alive = np.hypot(new_along, new_across) > 1e-9 * np.hypot(along, across)
     total = float(np.sum(surface.amplitude**2)) or 1.0
     weight = np.where(alive, surface.amplitude**2, 0.0) / total
-    length = np.where(alive, old / np.where(alive, new, 1.0) - 1.0, 0.0)
-    turn = _turn(surface.wave_number_x, surface.wave_number_y, adjusted, snapped)
-    return PeriodicSurface(
-        surface=replace(surface, wave_number_x=adjusted, wave_number_y=snapped),
-        width=width,
-        turn=math.sqrt(float(weight @ turn**2)),
-        length_change=math.sqrt(float(weight @ length**2)),
-        largest_length_change=float(np.max(np.abs(length))),
-        lost=float(np.sum(surface.amplitude[~alive] ** 2)) / total,
-    )
-
-
-def _turn(along: Array, across: Array, new_along: Array, new_across: Array) -> Array:
-    """Return the angles [rad] between old and new wave vectors [rad/m]."""
-    return np.asarray(
-        np.abs(
-            np.arctan2(
-                along * new_across - across * new_along, along * new_along + across * new_across
-            )
-        )
-    )
+    crossed = along * new_across - across * new_along
+    turn = np.abs(np.arctan2(crossed, along * new_along + across * new_across))
+    lost = float(np.sum(surface.amplitude[~alive] ** 2)) / total
+    return math.sqrt(float(weight @ turn**2)), lost

@@ -10,7 +10,7 @@ the loads on the screw, and from the power lost in the contacts.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -43,23 +43,11 @@ SMALLEST_DAMPING = 1 / 64
 """Where a Newton step is given up [-]."""
 LARGEST_CONDITION = 1e14
 """Condition of the equations above which the motion counts as undetermined [-]."""
+STEP_TOLERANCE, BALANCE_TOLERANCE, NEWTON_LIMIT = 1e-8, 1e-10, 40
+"""Largest last Newton step and largest imbalance over the normal force, most Newton steps of one
+solve [-]."""
 Iterate = tuple[Array, BalanceStatus, int]
 """Where a Newton iteration ended: scaled unknowns, status, steps."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class BalanceSettings:
-    """
-    How to solve.
-
-    Largest last Newton step and largest imbalance over the normal force [-], cap of Newton steps
-    of one solve [-].
-
-    """
-
-    step_tolerance: float = 1e-8
-    balance_tolerance: float = 1e-10
-    newton_limit: int = 40
 
 
 def balance_ball(
@@ -73,7 +61,6 @@ def balance_ball(
     flank: Flank = 1,
     screw_rolling_force: float = 0.0,
     nut_rolling_force: float = 0.0,
-    settings: BalanceSettings | None = None,
 ) -> BallBalance:
     """
     Balance one ball at a screw `speed` [rad/s], not zero.
@@ -105,15 +92,15 @@ def balance_ball(
     )
     if force == 0:
         return unloaded_balance(problem)
-    return balance_pairs(problem, settings or BalanceSettings())[0]
+    return balance_pairs(problem)[0]
 
 
-def balance_pairs(problem: BallProblem, settings: BalanceSettings) -> tuple[BallBalance, ...]:
+def balance_pairs(problem: BallProblem) -> tuple[BallBalance, ...]:
     """Return the balance of a ball for each pair of its flanks; all end with one status."""
-    unknowns, status, steps = _solve(problem, settings)
+    unknowns, status, steps = _solve(problem)
     if status is BalanceStatus.CONVERGED:
         balances = converged_balances(problem, unknowns, steps)
-        if balances[0].imbalance <= settings.balance_tolerance:
+        if balances[0].imbalance <= BALANCE_TOLERANCE:
             return balances
         status = BalanceStatus.STALLED
     return tuple(
@@ -129,7 +116,6 @@ def balance_four_points(
     flanks: tuple[BallFlank, ...],
     axial_forces: Sequence[float],
     preload_force: float,
-    settings: BalanceSettings | None = None,
 ) -> tuple[BallBalance, ...]:
     """
     Balance one ball that touches all four flanks at a screw `speed` [rad/s], not zero.
@@ -150,7 +136,7 @@ def balance_four_points(
         relieved_force=relieved,
         preload_force=preload_force,
     )
-    return balance_pairs(problem, settings or BalanceSettings())
+    return balance_pairs(problem)
 
 
 def _normal_force(screw: Screw, axial_force: float) -> float:
@@ -158,7 +144,7 @@ def _normal_force(screw: Screw, axial_force: float) -> float:
     return axial_force / (math.sin(screw.contact_angle) * math.cos(helix_angle(screw)))
 
 
-def _solve(problem: BallProblem, settings: BalanceSettings) -> Iterate:
+def _solve(problem: BallProblem) -> Iterate:
     """Solve with friction that sharpens in a few large stages, or else in many small ones."""
     coarse = tuple(replace(place, traction=place.traction.sample()) for place in problem.flanks)
     rough = replace(problem, flanks=coarse)
@@ -167,8 +153,8 @@ def _solve(problem: BallProblem, settings: BalanceSettings) -> Iterate:
         stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
         for stage in (*stages, problem):
             sharp = stage.slip_floor == problem.slip_floor
-            tolerance = settings.step_tolerance if sharp else STAGE_TOLERANCE
-            iterate = _newton(stage, iterate, tolerance, settings.newton_limit)
+            tolerance = STEP_TOLERANCE if sharp else STAGE_TOLERANCE
+            iterate = _newton(stage, iterate, tolerance)
             if iterate[1] is not BalanceStatus.CONVERGED:
                 break
         else:
@@ -190,7 +176,7 @@ def _floors(problem: BallProblem, ratio: float) -> list[float]:
     return [*(own * ratio**power for power in range(count, 0, -1)), problem.slip_floor]
 
 
-def _newton(problem: BallProblem, start: Iterate, tolerance: float, limit: int) -> Iterate:
+def _newton(problem: BallProblem, start: Iterate, tolerance: float) -> Iterate:
     """
     Iterate with damping by the natural monotonicity test.
 
@@ -200,7 +186,7 @@ def _newton(problem: BallProblem, start: Iterate, tolerance: float, limit: int) 
     """
     unknowns, _, before = start
     friction = wrenches(problem, unknowns)
-    for steps in range(before + 1, before + 1 + limit):
+    for steps in range(before + 1, before + 1 + NEWTON_LIMIT):
         imbalance, jacobian = linearise(problem, unknowns, friction)
         rows = np.abs(jacobian).max(axis=1, keepdims=True)
         finite = np.isfinite(jacobian).all() and rows.min() > 0

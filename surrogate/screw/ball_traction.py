@@ -8,7 +8,7 @@ over the places and their exact derivatives are what the balance of the ball nee
 
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 import math
 from typing import Protocol
 
@@ -117,24 +117,12 @@ class SolvedTraction:
         return replace(self, nodes=self.nodes.taken(slice(None, None, SAMPLE), SAMPLE))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FreeTraction:
-    """No friction at all: a flank without a contact, or one that the ball has left."""
-
-    growth: float = 0.0
-    slip_floor: float = math.inf
-
-    def places(self, load: float) -> tuple[Array, Array]:
-        """Return no places [m] under a `load` [N]."""
-        return np.empty(0), np.empty(0)
-
-    def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
-        """Return no strengths under a `load` [N]."""
-        return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
-
-    def sample(self) -> 'FreeTraction':
-        """Return itself."""
-        return self
+FREE = SolvedTraction(
+    nodes=NodeStrengths(**{field.name: np.empty(0) for field in fields(NodeStrengths)}),
+    load=1.0,
+    slip_floor=math.inf,
+)
+"""No friction at all: that of a flank without a contact, or of one that the ball has left."""
 
 
 def solved_traction(
@@ -195,7 +183,7 @@ def integrate_traction(
 
     """
     if not load > 0:
-        traction, load = FreeTraction(), 1.0
+        traction, load = FREE, 1.0
     x, y = (direction * place for place in traction.places(load))
     values, by_motion, by_size, power = sum_friction(
         x,

@@ -25,7 +25,7 @@ from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_equations import BallFlank
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
-from surrogate.screw.ball_traction import FreeTraction, solved_traction
+from surrogate.screw.ball_traction import FREE, solved_traction
 from surrogate.screw.contacts import RollingContact, smooth_film, solve_sides, SolvedContact
 from surrogate.screw.point import PointContact
 
@@ -241,7 +241,7 @@ def flanks_of(
             rolling_force=rolling_force(screw, contact),
         )
         if contact is not None
-        else BallFlank(side=side, flank=flank, traction=FreeTraction(), rolling_force=0.0)
+        else BallFlank(side=side, flank=flank, traction=FREE, rolling_force=0.0)
         for side, contact in zip(SIDES, solved, strict=True)
     )
 

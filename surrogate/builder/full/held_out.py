@@ -5,6 +5,7 @@
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+import itertools
 import math
 
 import numpy as np
@@ -81,8 +82,24 @@ def cell_errors(
     A cell without a point of its own has the largest of its stratum; NaN where none was.
 
     """
-    bands = load_bands(screw, settings)
-    return {name: _errors(name, data, solved, bands) for name in FIELDS}
+    axes, errors = (data.speed_coordinate, data.load, data.temperature), {}
+    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
+    for name in FIELDS:
+        error = np.full([len(axis) - 1 for axis in axes], np.nan)
+        for held_out in solved:
+            error[held_out.cell] = np.fmax(error[held_out.cell], _wrong(held_out, name))
+        errors[name] = filled = error.copy()
+        for speeds, loads in itertools.product(SPEEDS, load_bands(screw, settings)):
+            part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
+            alike = [
+                _wrong(held_out, name)
+                for held_out in solved
+                if _within(np.array(held_out.speed_coordinate), speeds)
+                and _within(np.array(abs(held_out.point[1])), loads)
+            ]
+            if alike:
+                filled[part] = np.where(np.isfinite(error[part]), error[part], max(alike))
+    return errors
 
 
 def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
@@ -136,30 +153,6 @@ def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:
         for axis, value in zip(axes, place)
     )
     return i, j, k
-
-
-def _errors(
-    name: str, data: SurfaceData, solved: Sequence[HeldOut], bands: Sequence[Ends]
-) -> Array:
-    """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
-    axes = (data.speed_coordinate, data.load, data.temperature)
-    error = np.full([len(axis) - 1 for axis in axes], np.nan)
-    for held_out in solved:
-        error[held_out.cell] = np.fmax(error[held_out.cell], _wrong(held_out, name))
-    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
-    filled = error.copy()
-    for speeds in SPEEDS:
-        for loads in bands:
-            part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
-            alike = [
-                _wrong(held_out, name)
-                for held_out in solved
-                if _within(np.array(held_out.speed_coordinate), speeds)
-                and _within(np.array(abs(held_out.point[1])), loads)
-            ]
-            if alike:
-                filled[part] = np.where(np.isfinite(error[part]), error[part], max(alike))
-    return filled
 
 
 def _wrong(held_out: HeldOut, name: str) -> float:

@@ -14,7 +14,6 @@ from ballscrew_monitor.core.state import (
     MonitorSettings,
     NOT_ENDED,
     NOT_SHELVED,
-    PositionSettings,
     Shelving,
 )
 from ballscrew_monitor.judge.kept import AxisRecord
@@ -107,10 +106,11 @@ def settings_of(text):
     known = json.loads(text)
     for name in ('timeouts', 'plausible'):
         known[name] = {Source[source]: value for source, value in known[name].items()}
-    kinds = {'limits': Limits, 'derivation': LoadDerivation, 'positions': PositionSettings}
+    kinds = {'limits': Limits, 'derivation': LoadDerivation}
     for name, kind in kinds.items():
         known[name] = None if known[name] is None else kind(**known[name])
-    return MonitorSettings(**known)
+    positions = known.pop('positions') or {'window': 0, 'wrap': 0.0}
+    return MonitorSettings(**known, position_window=positions['window'], wrap=positions['wrap'])
 
 
 def kept_of(text):

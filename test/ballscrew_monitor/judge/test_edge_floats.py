@@ -8,7 +8,7 @@ import sys
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.state import LoadDerivation, PositionSettings
+from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge.views import refused_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,8 +35,8 @@ DERIVATION = LoadDerivation(
 WAYS = {
     'measured': {},
     'torque': {'derivation': DERIVATION},
-    'position': {'positions': PositionSettings(window=SECOND // 20)},
-    'angle': {'positions': PositionSettings(window=SECOND // 20, wrap=2 * math.pi)},
+    'position': {'position_window': SECOND // 20},
+    'angle': {'position_window': SECOND // 20, 'wrap': 2 * math.pi},
 }
 
 

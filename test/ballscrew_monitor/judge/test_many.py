@@ -10,7 +10,7 @@ from ballscrew_monitor.core.advice import advised_speed
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings
 from ballscrew_monitor.judge import many
 from ballscrew_monitor.judge.many import compiled_nearest, EVENT, ManyJudge, MEMORY, ROW
 from ballscrew_monitor.judge.monitor import fill, Monitor
@@ -41,7 +41,7 @@ DERIVATION = {
     'parts_uncertainty': 0.1,
     'largest_share': 2.0,
 }
-POSITIONS = {'positions': PositionSettings(window=SECOND // 20, wrap=2 * math.pi)}
+POSITIONS = {'position_window': SECOND // 20, 'wrap': 2 * math.pi}
 WAYS = {
     'measured': {},
     'torque': {'derivation': LoadDerivation(inertia=0.0, **DERIVATION)},
@@ -211,7 +211,7 @@ def test_whatever_happens_comes_out_the_same(way, happenings, usual, period):
         before += [(Source.SPEED, 60.0)] * 5
         rest = (STEP // 10, 0, 0, 1, Why.OTHER_JOINTS)
         happenings = [*((SAMPLE, reading, *rest) for reading in before), *happenings]
-    events = events_of(happenings, told.positions is not None)
+    events = events_of(happenings, told.position_window > 0)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(many, 'AT_ONCE', 16)
         patch.setattr(many, 'MOST_MEMORIES', 5)

@@ -10,7 +10,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import EventEnd
-from ballscrew_monitor.core.state import Ending, LoadDerivation, PositionSettings, Shelving
+from ballscrew_monitor.core.state import Ending, LoadDerivation, Shelving
 from ballscrew_monitor.judge.records import Memory, MEMORY_LAYOUT
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.snapshot import restored, snapshot
@@ -31,7 +31,8 @@ DERIVED = {
         parts_uncertainty=0.1,
         largest_share=1e9,
     ),
-    'positions': PositionSettings(window=SECOND // 20, wrap=math.tau),
+    'position_window': SECOND // 20,
+    'wrap': math.tau,
 }
 
 

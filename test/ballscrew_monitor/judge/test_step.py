@@ -16,7 +16,6 @@ from ballscrew_monitor.core.inputs import (
     Why,
 )
 from ballscrew_monitor.core.judgement import Code, Level, PointSource, PointValidity, Zone
-from ballscrew_monitor.core.state import PositionSettings
 from ballscrew_monitor.judge.monitor import fill, Monitor
 from ballscrew_monitor.judge.records import Event, LIGHT_LOAD, Row, STANDSTILL
 from ballscrew_monitor.judge.step import BACKWARD_JUMP, NOTHING, STATE, step, step_many
@@ -426,8 +425,7 @@ def test_a_message_that_comes_late_and_a_hole_are_no_leap(core):
 
 def test_positions_leave_a_leap_out_once(core):
     """The first position after it gives no speed."""
-    settings = PositionSettings(window=5 * STEP)
-    monitor, lag = slow_is_bad(core, positions=settings), 3600 * SECOND
+    monitor, lag = slow_is_bad(core, position_window=5 * STEP), 3600 * SECOND
 
     def moves(first, count):
         return [
@@ -562,8 +560,8 @@ def test_the_event_is_active_exactly_while_the_level_warns(core, stream):
 
 def turning(core, wrap=math.tau):
     """Return a monitor whose samples of the speed are positions [rad]."""
-    positions = PositionSettings(window=SECOND // 20, wrap=wrap)
-    return core.monitor(positions=positions, plausible={Source.SPEED: 50.0})
+    window = SECOND // 20
+    return core.monitor(position_window=window, wrap=wrap, plausible={Source.SPEED: 50.0})
 
 
 def turn(core, monitor, angle, i):

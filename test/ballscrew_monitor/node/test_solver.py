@@ -10,7 +10,6 @@ import subprocess
 import sys
 
 from ballscrew_monitor.node.solver import (
-    Done,
     End,
     GRACE,
     Job,
@@ -148,7 +147,7 @@ def begin(world, *jobs):
 
 
 def ends(done):
-    return [(one.job, one.end, one.sentence) for one in done]
+    return [(one, one.end, one.sentence) for one in done]
 
 
 def solved(**result):
@@ -175,8 +174,8 @@ def test_one_after_another_in_the_order_in_which_they_came(world):
     for now, one in enumerate(jobs, start=1):
         assert pool.last[1] == one.request
         pool.give(solved(rcs=0.5))
-        expected = [Done(job=one, end=End.SOLVED, result={'rcs': 0.5}, wall_time=1.0)]
-        assert solver.poll(float(now)) == expected
+        assert ends(solver.poll(float(now))) == [(one, End.SOLVED, '')]
+        assert (one.result, one.wall_time) == ({'rcs': 0.5}, 1.0)
     assert not solver.busy
     assert len({name for name, _ in pool.asked}) == len(jobs)
 
@@ -295,4 +294,4 @@ def test_every_solve_ends_exactly_once(script):
     while solver.busy:
         now += 1.0
         done += solver.poll(now)
-    assert sorted(one.job.request['number'] for one in done) == list(range(len(jobs)))
+    assert sorted(one.request['number'] for one in done) == list(range(len(jobs)))

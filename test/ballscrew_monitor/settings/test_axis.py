@@ -122,11 +122,10 @@ def test_units_of_a_drive_and_of_positions_reach_the_inputs():
         torque__topic='current', torque__unit='A', torque__constant=0.5, handedness='left'
     )
     assert axis.inputs[1].scaling(4.0) == -2.0
-    assert build().monitor.settings.positions is None
+    assert build().monitor.settings.position_window == 0
     axis = build(speed__unit='deg', speed__field='position[0]', speed__wrap=360.0)
-    positions = axis.monitor.settings.positions
-    assert positions.window == SECOND // 20
-    assert positions.wrap == pytest.approx(math.tau)
+    assert axis.monitor.settings.position_window == SECOND // 20
+    assert axis.monitor.settings.wrap == pytest.approx(math.tau)
     assert axis.inputs[-1].scaling(180.0) == pytest.approx(math.pi)
 
 

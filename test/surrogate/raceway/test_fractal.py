@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted, theoretical_rms
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted
 from surrogate.raceway.fractal_fit import structure_function
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
@@ -73,7 +73,7 @@ def test_a_place_has_one_height_whatever_the_grid(x, y, seed):
         assert grid[1, 0] == pytest.approx(alone, rel=1e-9, abs=1e-16)
 
 
-def test_rms_follows_from_the_constants():
+def test_rms_follows_from_the_constants(theoretical_rms):
     """The nominal constants give Rq 0.12 um over 4 mm, and less over shorter samples."""
     assert theoretical_rms(NOMINAL) == pytest.approx(0.1186e-6, rel=1e-3)
     for length, expected in ((0.2e-3, 0.046e-6), (1e-3, 0.076e-6)):
@@ -165,7 +165,7 @@ def test_a_lay_runs_along_its_direction():
     assert ratio['transverse'] < 0.1
 
 
-def test_a_lay_keeps_the_rms():
+def test_a_lay_keeps_the_rms(theoretical_rms):
     x = np.linspace(-40e-3, 40e-3, 300)
     rms = [
         np.sqrt(
@@ -197,22 +197,11 @@ def test_bad_input_is_one_sentence(act, sentence, says):
     assert '\n' not in str(caught.value)
 
 
-def test_blocks_are_the_heights_of_the_surface():
-    """Put together they are the whole, also of a patch with its plane and scale."""
-    window = Window(length_x=1e-4, length_y=8e-4)
-    patch = take_patch(fractal_surface(PublishedRoughness(), 1), 'rescaled', window, 1e-7)
-    x = np.linspace(-1e-4, 3e-4, 50)
-    for surface in (RACEWAY, patch):
-        strip = surface.strip(ACROSS)
-        blocks = [strip.rows(part) for part in np.array_split(x, 4)]
-        np.testing.assert_allclose(np.concatenate(blocks), surface.heights(x, ACROSS), atol=1e-20)
-
-
-def test_a_strip_goes_on_without_end():
+def test_a_surface_goes_on_without_end():
     """A metre along the track it is the surface moved there, and as rough as at its start."""
     x = 1e-6 * np.arange(200)
-    far = RACEWAY.strip(ACROSS).rows(1.0 + x)
+    far = RACEWAY.heights(1.0 + x, ACROSS)
     np.testing.assert_allclose(far, shifted(RACEWAY, 1.0, 0.0).heights(x, ACROSS), atol=1e-14)
     places = np.arange(0.0, 0.4, 1.3e-3)
-    start, later = (np.std(RACEWAY.strip(ACROSS).rows(where + places)) for where in (0.0, 2.0))
+    start, later = (np.std(RACEWAY.heights(where + places, ACROSS)) for where in (0.0, 2.0))
     assert later == pytest.approx(start, rel=0.1)

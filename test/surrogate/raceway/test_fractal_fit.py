@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, theoretical_rms
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.fractal_fit import (
     expected_structure_function,
     identify_fractal,
@@ -20,7 +20,7 @@ ALONG = np.arange(0, 4e-3, SPACING)
 TRACES = np.linspace(0, 4e-3, 64)
 
 
-def test_the_structure_function_is_the_mean_of_many_and_tends_to_the_variance():
+def test_the_structure_function_is_the_mean_of_many_and_tends_to_the_variance(theoretical_rms):
     """Over many places and draws; heights far apart differ by 2 Rq^2 on average."""
     lags = np.array([1, 4, 16, 64])
     measured = np.mean(
@@ -48,7 +48,7 @@ def test_dimension_and_roughness_come_back(seed):
 
 
 @pytest.mark.parametrize('dimension', [2.2, 2.4, 2.85])
-def test_other_dimensions_come_back(dimension):
+def test_other_dimensions_come_back(dimension, theoretical_rms):
     other = replace(NOMINAL, fractal_dimension=dimension)
     fit = identify_fractal(fractal_surface(other, 1).heights(ALONG, TRACES), SPACING, NOMINAL)
     assert fit.fractal_dimension == pytest.approx(dimension, abs=0.03)

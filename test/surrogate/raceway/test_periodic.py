@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.raceway.fractal import FractalSurface
-from surrogate.raceway.periodic import periodic_across
+from surrogate.raceway.periodic import periodic_across, turn_and_loss
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
 from surrogate.raceway.spectrum import RoughnessSpectrum
 
@@ -28,7 +28,7 @@ def one_wave(along, across, amplitude=1e-7):
 
 @given(width=st.floats(1e-4, 5e-3), seed=st.integers(0, 50), y=st.floats(-1e-3, 1e-3))
 def test_heights_repeat_across_the_track(width, seed, y):
-    surface = periodic_across(draw_raceway(scale_spectrum(SPECTRUM), seed), width).surface
+    surface = periodic_across(draw_raceway(scale_spectrum(SPECTRUM), seed), width)
     heights = surface.heights(np.linspace(0, 1e-3, 7), y + width * np.array([0, 1, -1, 10]))
     np.testing.assert_allclose(heights, heights[:, :1] * np.ones(4), atol=1e-17)
 
@@ -37,7 +37,7 @@ def test_heights_repeat_across_the_track(width, seed, y):
 def test_waves_move_by_half_a_step_across_or_keep_their_length(width, seed):
     """Nearest multiples; where the length changes, the part along the track does not."""
     before = draw_raceway(scale_spectrum(SPECTRUM), seed)
-    after = periodic_across(before, width).surface
+    after = periodic_across(before, width)
     step = 2 * math.pi / width
     assert np.all(np.abs(after.wave_number_y - before.wave_number_y) <= step / 2 * (1 + 1e-9))
     old, new = (np.hypot(one.wave_number_x, one.wave_number_y) for one in (before, after))
@@ -47,35 +47,46 @@ def test_waves_move_by_half_a_step_across_or_keep_their_length(width, seed):
     np.testing.assert_array_equal(after.phase, before.phase)
 
 
+def amounts(surface):
+    """Return the amounts of the wave vectors of a surface [rad/m]."""
+    return np.hypot(surface.wave_number_x, surface.wave_number_y)
+
+
 def test_the_cost_falls_with_the_width_and_single_waves_keep_their_length():
     """A steep wave keeps its length, one that runs across keeps its part along the track."""
     surface = draw_raceway(scale_spectrum(SPECTRUM), 1)
-    narrow, wide, wider = (periodic_across(surface, width) for width in (5e-4, 5e-3, 5e-2))
-    for name in ('turn', 'length_change', 'largest_length_change'):
-        assert getattr(narrow, name) > getattr(wide, name) > getattr(wider, name)
-    assert wider.turn < 0.02 * narrow.turn
-    assert wider.length_change < 0.02 * narrow.length_change
-    again = periodic_across(wide.surface, wide.width)
-    assert (again.turn, again.length_change, again.lost) == pytest.approx((0, 0, 0), abs=1e-9)
-    turned = periodic_across(one_wave(40.0, 1.1), 1e-3)
-    assert turned.surface.wave_number_y == pytest.approx(2e3 * math.pi)
-    assert turned.length_change == pytest.approx(0, abs=1e-12)
-    assert turned.turn == pytest.approx(0.1 / 40, rel=0.01)
+    found = [periodic_across(surface, width) for width in (5e-4, 5e-3, 5e-2)]
+    turns = [turn_and_loss(surface, periodic)[0] for periodic in found]
+    stretches = [np.abs(amounts(surface) / amounts(periodic) - 1) for periodic in found]
+    changes = [np.sqrt(surface.amplitude**2 @ stretch**2) for stretch in stretches]
+    for costs in (turns, changes, [stretch.max() for stretch in stretches]):
+        assert costs[0] > costs[1] > costs[2]
+    assert turns[2] < 0.02 * turns[0]
+    assert changes[2] < 0.02 * changes[0]
+    again = periodic_across(found[1], 5e-3)
+    assert turn_and_loss(found[1], again) == pytest.approx((0, 0), abs=1e-9)
+    np.testing.assert_allclose(amounts(again), amounts(found[1]), rtol=1e-9)
+    steep = one_wave(40.0, 1.1)
+    turned = periodic_across(steep, 1e-3)
+    assert turned.wave_number_y == pytest.approx(2e3 * math.pi)
+    assert amounts(turned) == pytest.approx(amounts(steep), rel=1e-12)
+    assert turn_and_loss(steep, turned)[0] == pytest.approx(0.1 / 40, rel=0.01)
     stretched = periodic_across(one_wave(0.2, 10.4), 1e-3)
-    assert stretched.surface.wave_number_x == pytest.approx(2e3 * math.pi * 0.2)
-    assert stretched.length_change == pytest.approx(0.04, rel=0.01)
-    assert stretched.length_change == stretched.largest_length_change
-    lost = periodic_across(one_wave(0.0, 0.3), 1e-3)
-    assert (lost.lost, lost.length_change) == (1.0, 0.0)
+    assert stretched.wave_number_x == pytest.approx(2e3 * math.pi * 0.2)
+    assert amounts(one_wave(0.2, 10.4)) / amounts(stretched) == pytest.approx(1.04, rel=4e-4)
+    flat = one_wave(0.0, 0.3)
+    assert turn_and_loss(flat, periodic_across(flat, 1e-3)) == (0.0, 1.0)
 
 
 def test_ridges_along_the_track_stay_so():
     """A longitudinal lay without a fan is the same at every place of the track, snapped or not."""
     ridges = replace(SPECTRUM, lay='longitudinal', fan_angle=0.0)
-    found = periodic_across(draw_raceway(scale_spectrum(ridges), 2), 0.7e-3)
-    heights = found.surface.heights(np.linspace(0, 1e-3, 5), np.linspace(0, 1e-3, 50))
+    surface = draw_raceway(scale_spectrum(ridges), 2)
+    found = periodic_across(surface, 0.7e-3)
+    heights = found.heights(np.linspace(0, 1e-3, 5), np.linspace(0, 1e-3, 50))
     np.testing.assert_allclose(heights, heights[:1] * np.ones((5, 1)), atol=1e-17)
-    assert found.turn < 1e-9 < found.length_change
+    assert turn_and_loss(surface, found)[0] < 1e-9
+    assert not np.allclose(amounts(found), amounts(surface), rtol=1e-9)
 
 
 def test_what_has_no_period_is_refused(refused):

@@ -13,7 +13,7 @@ from surrogate.raceway.fractal import PublishedRoughness, wave_spectrum
 from surrogate.raceway.fractal_fit import identify_fractal
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum, with_shorter_waves
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.stylus import filtered_profile, profile_rms, profile_rms_slope, read_waves
+from surrogate.raceway.stylus import read_waves
 
 NOMINAL = PublishedRoughness()
 SPECTRUM = RoughnessSpectrum(rms=0.12e-6, cutoff_long=0.25e-3, fractal_dimension=2.68)
@@ -103,16 +103,16 @@ def test_the_mean_over_traces_stands_for_every_number_of_ridges(ridges):
 
 
 @pytest.mark.parametrize('lay', ['isotropic', 'longitudinal', 'transverse'])
-def test_filtered_profiles_of_draws_have_the_rms_and_slope(lay):
+def test_filtered_profiles_of_draws_have_the_rms_and_slope(lay, traced):
     """Within four standard errors of 200 draws, traced across a lay or in random directions."""
     fan = {} if lay == 'isotropic' else {'fan_angle': FAN}
     scaled = scale_spectrum(replace(SMALL, lay=lay, **fan))
     turn = np.random.default_rng(5).uniform(0, math.pi, 200) * (lay == 'isotropic')
     heights = traces(scaled, 200, turn, across=lay == 'longitudinal')
-    rough = filtered_profile(heights, SPACING, scaled.band)
+    rough, slopes = traced(heights, SPACING, scaled.band)
     for found, expected in (
-        (profile_rms(rough) ** 2, scaled.rms**2),
-        (np.tan(profile_rms_slope(rough, SPACING)) ** 2, math.tan(scaled.rms_slope) ** 2),
+        (np.mean(rough**2, axis=0), scaled.rms**2),
+        (np.mean(slopes**2, axis=0), math.tan(scaled.rms_slope) ** 2),
     ):
         error = found.std() / math.sqrt(len(found))
         assert error < 0.03 * expected

@@ -10,7 +10,7 @@ import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, theoretical_rms
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import STANDING, subgrid_floor, wave_rms, without_short_waves
 
@@ -38,7 +38,7 @@ def test_long_waves_stay_as_they_are_and_some_must_be_left(surface, refused):
     refused('5000_um_longest', without_short_waves, surface, 5e-3)
 
 
-def test_rms_of_the_waves_is_that_of_the_formula():
+def test_rms_of_the_waves_is_that_of_the_formula(theoretical_rms):
     """An unscaled surface has the theoretical Rq of its constants."""
     assert wave_rms(fractal_surface(ROUGHNESS, 0)) == pytest.approx(theoretical_rms(ROUGHNESS))
 

@@ -17,7 +17,7 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import load_screw
 from surrogate.screw import ball_balance
-from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings, FIRST_FLOOR
+from surrogate.screw.ball_balance import _floors, balance_ball, FIRST_FLOOR
 from surrogate.screw.ball_equations import BallFlank, TwoPointBall
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact
@@ -309,10 +309,10 @@ def assert_unknown(found):
         assert all(math.isnan(getattr(contact, field.name)) for field in fields(BallContact))
 
 
-def test_failures_give_no_numbers(screw):
-    short = coulomb(
-        screw, SPEED, 0.05, normal_force=27.6, settings=BalanceSettings(newton_limit=1)
-    )
+def test_failures_give_no_numbers(screw, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(ball_balance, 'NEWTON_LIMIT', 1)
+        short = coulomb(screw, SPEED, 0.05, normal_force=27.6)
     assert (short.status, short.iterations) == (BalanceStatus.STALLED, 1)
     slippery = coulomb(screw, SPEED, 0.0, normal_force=27.6)
     assert slippery.status is BalanceStatus.UNDETERMINED
@@ -393,6 +393,5 @@ def test_a_ball_is_solved_to_the_tolerances_that_are_measured():
     stages = ball_balance.STAGE_RATIOS, ball_balance.STAGE_TOLERANCE, FIRST_FLOOR
     assert stages == ((10.0, 3.0, 1.5, math.inf), 0.2, 3.0)
     assert (ball_balance.SMALLEST_DAMPING, ball_balance.LARGEST_CONDITION) == (1 / 64, 1e14)
-    assert BalanceSettings() == BalanceSettings(
-        step_tolerance=1e-8, balance_tolerance=1e-10, newton_limit=40
-    )
+    assert (ball_balance.STEP_TOLERANCE, ball_balance.BALANCE_TOLERANCE) == (1e-8, 1e-10)
+    assert ball_balance.NEWTON_LIMIT == 40
