@@ -45,12 +45,17 @@ file may always come to [byte].
 """
 XLSX_CELL = 80
 """What a cell of a workbook takes in memory while it is read, as measured [B]."""
-PARQUET_CELL = 8
-"""What a cell of a Parquet file takes in memory while it is read [B]."""
+NUMBER_CELL = 8
+"""What a number of a Parquet file or of a signal takes in memory while it is read [B]."""
+TEXT_CELL = 16
+"""What a text in a column of a signal takes in memory while it is read, at least [B]."""
 SPARSE = 640 * MEGA
-"""What rows x columns x cell of any workbook may come to [byte]."""
+"""What rows x columns x cell of any workbook, and of signals side by side, may come to [byte]."""
 MEMORY = 1600 * MEGA
-"""What those of the largest workbook may come to, and the process that reads a table [byte]."""
+"""
+What those of the largest workbook may come to, and the process that reads a workbook or signals
+[byte].
+"""
 FOOTER = 2000
 """
 Longest footer of a Parquet file that is read at once [B]: a level takes six bytes, and 400

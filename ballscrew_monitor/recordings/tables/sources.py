@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read,
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
 from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
+from ballscrew_monitor.recordings.tables.long_form import decoded
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
@@ -194,7 +195,7 @@ class Source:
         Cells of a text are texts, or numbers of the `types`, which may change between two blocks.
 
         """
-        come_to = limits.PARQUET_CELL * self.rows * len(names)
+        come_to = limits.NUMBER_CELL * self.rows * len(names)
         if come_to > self.most:
             raise InputError(
                 f'log {self.path}: {len(names)} columns of {self.rows} rows come to '
@@ -255,14 +256,19 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
 
 
 def is_log(path: Path) -> bool:
-    """Return True if a file holds rows of numbers or signals, whatever its ending."""
+    """Return True if a file begins with rows of numbers or signals, whatever its ending."""
     with contextlib.suppress(InputError):
-        head = _head_of(path)
+        head = _head_of(path, limits.MEGA)
+        if head.startswith(codings.GZIP):
+            head = codings.unpacked(path, limits.MEGA)
         if head.startswith((PARQUET, ZIP)):
             return head.startswith(PARQUET)
-        if kind := foreign.kind_of(head):
-            return bool(foreign.read_signals(path, kind).frame.width)
-        return heads.holds_numbers(_first_lines(_Text.of(path, head))[0], FEWEST)
+        if kind := foreign.kind_of(head[:HEAD]):
+            return foreign.holds_numbers(head, kind, FEWEST)
+        if codings.wide_coding(head):
+            head = decoded(head).encode()
+        text = _Text.of(path, head, head.rstrip(codings.NUL))
+        return heads.holds_numbers(_first_lines(text)[0], FEWEST)
     return False
 
 
@@ -276,10 +282,10 @@ def of_frame(path: Path, frame: pl.LazyFrame, head: Head, rows: int, most: float
     return Source(path=path, head=head, rows=max(rows, 1), read=read, most=most)
 
 
-def _head_of(path: Path) -> bytes:
+def _head_of(path: Path, size: int = HEAD) -> bytes:
     try:
         with path.open('rb') as stream:
-            head = stream.read(HEAD)
+            head = stream.read(size)
     except OSError as error:
         raise InputError(f'log {path} cannot be read: {error.strerror}') from None
     if not head.strip():
@@ -406,10 +412,10 @@ class _Text:
     lines_about: int
 
     @classmethod
-    def of(cls, path: Path, head: bytes) -> '_Text':
-        content, size = codings.decoded(path, head), path.stat().st_size
-        if content is not None:
-            head, size = content[:HEAD], len(content)
+    def of(cls, path: Path, head: bytes, content: bytes | None = None) -> '_Text':
+        content = codings.decoded(path, head) if content is None else content
+        size = path.stat().st_size if content is None else len(content)
+        head = head if content is None else content[:HEAD]
         if codings.NUL in head:
             raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
