@@ -546,7 +546,7 @@ def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> boo
     for begin in range(0, len(letters), WINDOW):  # whose arrays stay in the cache
         part = letters[slice(begin, begin + WINDOW + 1)]
         signs, low = part == ord(separator), part <= ord(AFTER_EMPTY)
-        count += np.count_nonzero(signs[:WINDOW])
+        count += int(np.count_nonzero(signs[:WINDOW]))
         is_empty |= bool((signs[:-1] & (signs[1:] | low[1:])).any())
     if count != (width - 1) * lines or not is_empty:
         return count == (width - 1) * lines
