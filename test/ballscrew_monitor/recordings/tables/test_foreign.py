@@ -355,8 +355,8 @@ def test_variables_of_matlab_are_counted_before_they_are_unpacked(
 @pytest.mark.parametrize(
     ('key', 'content'),
     [
-        ('records', [{f'{at}': 0.0} for at in range(100)]),
-        ('lists', {'a': [0.0] * 1000} | {f'{at}': [0.0, 1.0] for at in range(9)}),
+        ('wide_records', [{f'{at}': 0.0} for at in range(100)]),
+        ('wide_lists', {'a': [0.0] * 1000} | {f'{at}': [0.0, 1.0] for at in range(9)}),
     ],
 )
 def test_names_of_json_that_come_to_many_cells_are_counted_before(
@@ -365,7 +365,7 @@ def test_names_of_json_that_come_to_many_cells_are_counted_before(
     path = tmp_path / 'log.json'
     path.write_text(json.dumps(content))
     monkeypatch.setattr(foreign.limits, 'SPARSE', 79_000)
-    refused(f'wide_{key}', foreign.read_signals, path, 'json')
+    refused(key, foreign.read_signals, path, 'json')
 
 
 def test_names_of_a_trace_that_come_to_many_cells_are_counted_before(
