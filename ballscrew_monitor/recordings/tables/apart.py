@@ -3,8 +3,8 @@
 """
 Frames that a process of bounded memory makes of a file, and what a frame may come to.
 
-A reader of files of others may abort, or take more memory than there is: it takes its own process
-along, and the log is refused in one sentence.
+A library that reads files of others may abort, or ask for more memory than there is. Only its own
+process ends then, and the log is refused in one sentence.
 
 """
 

@@ -57,6 +57,7 @@ EXPECTED = {
     'mdf': 'an MDF file with signals of numbers',
 }
 """What a file of each kind must be."""
+OF_LISTS = 'its cells are lists'
 SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue', 'missing_value')
 """Attributes of the CF conventions: a value is the number times the factor plus the offset."""
 BINARY = ('mat', 'hdf', 'tdms', 'mdf')
@@ -212,9 +213,15 @@ def _json(path: Path) -> Signals:
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
         factors = ', '.join(_stated_factors(content))
         if not records:
+            nested = {name for name, cells in lists.items() if any(map(_is_nested, cells))}
+            lists = {name: cells for name, cells in lists.items() if name not in nested}
             period, unclear = _period_beside(content, lists)
             return Signals(
-                frame=_side_by_side(lists), factors=factors, period=period, unclear_period=unclear
+                frame=_side_by_side(lists),
+                factors=factors,
+                period=period,
+                unclear_period=unclear,
+                left_out=dict.fromkeys(sorted(nested), OF_LISTS),
             )
         chosen = max(records, key=lambda name: json_layouts.motion_of(lists[name]))
         content = json_layouts.plain_table(lists[chosen])
@@ -223,19 +230,18 @@ def _json(path: Path) -> Signals:
         more_rows = sum(_rows_alike(lists[chosen], lists[name]) for name in others)
     if not _are_all(dict, content):
         raise TypeError
-    nested = {
-        name: 'its cells are lists'
-        for record in content
-        for name, cell in record.items()
-        if isinstance(cell, list | dict)
-    }
+    nested = {name for one in content for name, cell in one.items() if _is_nested(cell)}
     return Signals(
         frame=_of_records(content, nested),
-        left_out=left_out | nested,
+        left_out=left_out | dict.fromkeys(sorted(nested), OF_LISTS),
         more_rows=more_rows,
         empty_rows=[at + 1 for at, record in enumerate(content) if not record],
         factors=factors,
     )
+
+
+def _is_nested(cell: Any) -> bool:
+    return isinstance(cell, list | dict)
 
 
 def _of_records(
@@ -427,14 +433,16 @@ def _hdf(path: Path) -> Signals:
     with h5py.File(path, 'r') as file:
         factors.extend(_unclear_factors('', file.attrs))
         file.visititems(visit)
-        _check_arrays(one.shape or () for one in datasets.values() for _ in one.dtype.names or '-')
+        numeric = {
+            called: item
+            for called, item in datasets.items()
+            if item.dtype.kind in 'iufb' or item.dtype.names
+        }
+        _check_arrays(one.shape or () for one in numeric.values() for _ in one.dtype.names or '-')
         for called, item in datasets.items():
-            if item.dtype.kind not in 'iufb' and not item.dtype.names:
-                no_number = np.void(b' ')
-                found[called] = np.broadcast_to(no_number, item.shape or ())
-                continue
-            if not _columns_of(item.shape):
-                found[called] = np.broadcast_to(0.0, item.shape)  # which is not read
+            shape, is_numeric = item.shape or (), called in numeric
+            if not is_numeric or not _columns_of(shape):  # it is not read
+                found[called] = np.broadcast_to(0.0 if is_numeric else np.void(b' '), shape)
                 continue
             for field in item.dtype.names or ():
                 found[f'{called}.{field}'] = np.squeeze(item[field])
@@ -475,9 +483,8 @@ def _columns_of(shape: Sequence[int]) -> int:
 
 def _check_arrays(shapes: Iterable[Sequence[int]]) -> None:
     """Raise Unreadable if arrays of some shapes come to more than is allowed side by side."""
-    tables = [shape for shape in shapes if _columns_of(shape)]
-    longest = max((max(shape, default=1) for shape in tables), default=0)
-    check_room(longest, sum(map(_columns_of, tables)))
+    tables = [shape for shape in shapes if math.prod(shape) > 1 and _columns_of(shape)]
+    check_room(max(map(max, tables), default=0), sum(map(_columns_of, tables)))
 
 
 def _arrays(content: Mapping[str, Any]) -> Signals:
@@ -542,17 +549,24 @@ def _tdms(path: Path) -> Signals:
     library = _optional('nptdms', path, 'TDMS', 'npTDMS')
     with library.TdmsFile.open(path) as file:
         groups = [group for group in file.groups() if group.channels()]
-        held, waves = {}, {}
         channels = [channel for group in groups for channel in group.channels()]
         check_room(max(map(len, channels), default=0), len(channels))
-        for channel in channels:
+        waves = {channel: Waveform.of(channel.properties) for channel in channels}
+        timed = {channel.group_name for channel, wave in waves.items() if wave}
+        left_out: dict[str, str] = {}
+        held: dict[str, Any] = {}
+        by_name: dict[str, Waveform | None] = {}
+        for channel, wave in waves.items():
             before = f'{channel.group_name}.' if len(groups) > 1 else ''
             unit, name = channel.properties.get('unit_string', ''), f'{before}{channel.name}'
+            if timed and channel.group_name not in timed:
+                left_out[name] = f'its group states no {STEP}, and others do'
+                continue
             name = f'{name} [{unit}]' if unit else name
             held[name] = channel[:]
             if held[name].dtype.kind in 'iufb':
-                waves[name] = Waveform.of(channel.properties)
-    return _of_waveforms(held, waves)
+                by_name[name] = wave
+    return dataclasses.replace(_of_waveforms(held, by_name), left_out=left_out)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -569,7 +583,7 @@ class Waveform:
         step, start = float(properties.get(STEP, 0.0)), properties.get(BEGIN)
         begin = None if start is None else np.datetime64(start, 'ns')
         offset = round(float(properties.get(OFFSET, 0.0)) * SECOND)
-        return cls(start=begin, offset=offset, step=step) if step > 0.0 else None
+        return cls(start=begin, offset=offset, step=step) if 0.0 < step < math.inf else None
 
 
 def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None]) -> Signals:
@@ -587,7 +601,7 @@ def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None])
             f'{STEP if bare else BEGIN}: write it into each channel, or save the signals as CSV '
             'with a column of the time'
         )
-    if len(clocks) != 1 and bare:
+    if not clocks:
         return Signals(frame=_side_by_side(held))
     first = min(clocks, key=lambda wave: _begin(wave))
     start = '' if first.start is None else str(first.start + np.timedelta64(first.offset, 'ns'))
@@ -620,12 +634,15 @@ def _mdf(path: Path) -> Signals:
         sum(len(group.channels) - 1 for group in groups) + 1,
     )
     by_time: list[dict[str, Any]] = []
+    counts: Counter[str] = Counter()
     for signal in file.iter_channels(copy_master=False):
         if signal.samples.dtype.kind in 'iuf' and signal.samples.ndim == 1:
             if not by_time or not np.array_equal(by_time[-1]['time [s]'], signal.timestamps):
                 by_time.append({'time [s]': signal.timestamps})
-            name = f'{signal.name} [{signal.unit}]' if signal.unit else signal.name
-            by_time[-1][name] = signal.samples
+            counts[signal.name] += 1
+            several = counts[signal.name] > 1
+            name = f'{signal.name} {counts[signal.name]}' if several else signal.name
+            by_time[-1][f'{name} [{signal.unit}]' if signal.unit else name] = signal.samples
     frames = [pl.DataFrame(columns) for columns in by_time]
     frame = pl.concat(frames, how='diagonal').sort('time [s]') if frames else pl.DataFrame()
     return Signals(frame=frame, start=str(file.header.start_time))

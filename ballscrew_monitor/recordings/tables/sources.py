@@ -420,7 +420,7 @@ class _Text:
         if codings.NUL in head:
             raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
-        lines = max(head.count(line_end.encode()), 1) * size // len(head)
+        lines = max(head.count(line_end.encode()), 1) * size // max(len(head), 1)
         return cls(path=path, content=content, line_end=line_end, lines_about=max(lines, 1))
 
     def stream(self) -> BinaryIO:

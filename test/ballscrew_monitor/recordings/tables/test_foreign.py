@@ -304,20 +304,27 @@ def test_a_process_of_its_own_reads_the_same(name, tmp_path, monkeypatch):
 
 
 FAR = 100_000_000  # rows, which come to 800 MB
+SCALARS = {f'scalar_{at}': () for at in range(99)}
 
 
 def hdf_of_shapes(path, shapes):
     """Write datasets of which nothing is stored: they hold zeros."""
     with h5py.File(path, 'w') as file:
         for name, shape in shapes.items():
-            file.create_dataset(name, shape, 'u1', chunks=(1000, *shape[1:]), compression='gzip')
+            packed = {'chunks': (1000, *shape[1:]), 'compression': 'gzip'} if shape else {}
+            file.create_dataset(name, shape, 'u1', **packed)
 
 
 @pytest.mark.parametrize(
     ('key', 'shapes'),
     [
         ('long', {'speed': (FAR,)}),
-        ('uneven', {'speed': (FAR // 10,)} | {f'last_{at}': (2000,) for at in range(9)}),
+        (
+            'uneven',
+            {f'scalar_{at}': () for at in range(99)}
+            | {'speed': (FAR // 10,)}
+            | {f'last_{at}': (2000,) for at in range(9)},
+        ),
         ('matrix', {'runs': (FAR // 10, 9)}),
     ],
 )
@@ -375,6 +382,16 @@ def test_names_of_a_trace_that_come_to_many_cells_are_counted_before(
     path.write_text(''.join(['<t>', *(f'<rec f{at}="1"/>' for at in range(100)), '</t>']))
     monkeypatch.setattr(foreign.limits, 'SPARSE', 79_000)
     refused('wide_records', foreign.read_signals, path, 'xml')
+
+
+def test_lists_of_lists_are_named(tmp_path, says):
+    """Each of their records may hold names of its own, which would be columns of all."""
+    path = tmp_path / 'log.json'
+    lists = {'t_s': [*range(9)], 'parts': [0.0, *({f'{at}': at} for at in range(8))]}
+    path.write_text(json.dumps(lists))
+    signals = foreign.read_signals(path, 'json')
+    assert signals.left_out == {'parts': says('cells')}
+    assert signals.frame.columns == ['t_s']
 
 
 def test_cells_of_records_that_are_lists_are_named(tmp_path, says):
@@ -627,6 +644,23 @@ def test_waveforms_of_two_rates_have_times_of_their_own(tdms):
     assert math.isnan(signals.period)
 
 
+def test_a_group_without_steps_beside_waveforms_is_named(tdms, says):
+    events = Channel('events/t', TIME[:9], unit='')
+    path = tdms(*speed_and_place(start_time=START, of_place={}), events)
+    signals = foreign.read_signals(path, 'tdms')
+    assert signals.left_out == {'events.t': says('no_wave')}
+    assert signals.period == STEP
+    assert signals.frame.width == 2
+
+
+def test_a_start_that_was_never_set_is_no_date(tdms):
+    """LabVIEW counts from 1904, and so does a waveform whose start is 0."""
+    never = np.datetime64('1904-01-01T00:00:00')
+    content = guess(tdms(*speed_and_place(start_time=never, of_place={}))).content
+    assert 'date_from' not in content
+    assert content['assumed']['time.epoch']['value'].startswith('2000')
+
+
 def test_a_step_that_some_channels_lack_is_asked_for(tdms, says):
     path = tdms(*speed_and_place(of_place={'increment': 0.0}))
     made = guess(path)
@@ -661,12 +695,13 @@ def test_signals_of_one_group_of_mdf_are_columns_side_by_side(tmp_path, monkeypa
         signal('x position', PLACE, TIME.copy(), 'mm'),
         signal('words', np.array([b'a'] * COUNT), TIME),
         signal('x temperature', later, later, 'degC'),
+        signal('x temperature', later + 5.0, later, 'degC'),
     ]
     group = types.SimpleNamespace
     file = types.SimpleNamespace(
         groups=[
             group(channel_group=group(cycles_nr=count), channels=[None] * channels)
-            for count, channels in ((COUNT, 4), (50, 2))
+            for count, channels in ((COUNT, 4), (50, 3))
         ],
         iter_channels=lambda copy_master: iter(signals),
         header=types.SimpleNamespace(start_time='2025-07-14 11:59:50+00:00'),
@@ -680,6 +715,7 @@ def test_signals_of_one_group_of_mdf_are_columns_side_by_side(tmp_path, monkeypa
         'x velocity [mm/s]',
         'x position [mm]',
         'x temperature [degC]',
+        'x temperature 2 [degC]',
     ]
     assert frame['time [s]'].is_sorted()
     fast = frame.filter(pl.col('x velocity [mm/s]').is_not_null())
@@ -687,6 +723,7 @@ def test_signals_of_one_group_of_mdf_are_columns_side_by_side(tmp_path, monkeypa
     np.testing.assert_array_equal(fast['time [s]'], TIME)
     slow = frame.filter(pl.col('x temperature [degC]').is_not_null())
     np.testing.assert_array_equal(slow['time [s]'], slow['x temperature [degC]'])
+    np.testing.assert_array_equal(slow['time [s]'] + 5.0, slow['x temperature 2 [degC]'])
     path.touch()
     monkeypatch.setattr(file, 'iter_channels', None)
     file.groups[1].channel_group.cycles_nr = FAR
