@@ -318,7 +318,9 @@ def map_page() -> str:
         table(['column', 'units'], units),
         '## Limits of files',
         'A file beyond a limit is refused in one sentence; a chunk or a message beyond its limit '
-        'is left out and counted. Declared in `surrogate/files/limits.py`.',
+        'is left out and counted. A workbook, arrays, and a large text of signals are read by a '
+        'process that may use `MEMORY`, and are refused if it ends before they are read. Declared '
+        'in `surrogate/files/limits.py`.',
         table(['limit', 'value', 'meaning'], limit_rows()),
     )
 

@@ -15,11 +15,17 @@ from surrogate.files import InputError
 
 MEGA = 1_000_000
 TEXT = 8 * MEGA
-"""Largest text that is parsed at once, such as YAML and JSON [byte]."""
+"""
+Largest YAML, and JSON other than a log [byte]; a larger text of signals is read by a process of
+its own.
+"""
 TABLE = 64 * MEGA
-"""Largest table that is read as one text [byte]."""
+"""
+Largest table that is read as one text [byte], such as JSON, XML, lines of an adapter and a value
+a line.
+"""
 DEPTH = 64
-"""Most parts within parts of YAML and JSON."""
+"""Most parts within parts of YAML and JSON, and within a column of Parquet."""
 VALUES = 100_000
 """Most values of a YAML text, those of an alias as often as it stands."""
 MESSAGE = 32 * MEGA
@@ -31,26 +37,37 @@ RECORDS = 500_000
 SUMMARY = 32 * MEGA
 """Largest summary of an MCAP file [byte]."""
 WAITING = 64 * MEGA
-"""Most that messages hold which wait for earlier ones [byte]."""
+"""
+Most that messages hold which wait for earlier ones [byte]; beyond, the first of them waits no
+longer.
+"""
 PACKING = 200
-"""Largest size of what is unpacked over that of its file [-]; `CHUNK` is always allowed."""
+"""
+Largest size of what is unpacked over that of its file [-]; `CHUNK` is always allowed, of Parquet
+`WORKBOOK`, and arrays come to `SPARSE` at most.
+"""
 COLUMNS = 5000
 """Most columns of a table."""
 LINE = 4 * MEGA
 """Longest line of a table [byte]."""
 WORKBOOK = 512 * MEGA
 """
-Largest workbook, unpacked, and text of UTF-16, which are read at once; what columns of a Parquet
-file may always come to [byte].
+Largest workbook and text of gzip, unpacked, text of UTF-16, and file of MATLAB, HDF5, TDMS or MDF;
+what columns of a Parquet file may always come to [byte].
 """
 XLSX_CELL = 80
 """What a cell of a workbook takes in memory while it is read, as measured [B]."""
-PARQUET_CELL = 8
-"""What a cell of a Parquet file takes in memory while it is read [B]."""
+NUMBER_CELL = 8
+"""What a number of a Parquet file or of a signal takes in memory while it is read [B]."""
+TEXT_CELL = 16
+"""What a text in a column of a signal takes in memory while it is read, at least [B]."""
 SPARSE = 640 * MEGA
-"""What rows x columns x cell of any workbook may come to [byte]."""
+"""What rows x columns x cell of any workbook, and of signals side by side, may come to [byte]."""
 MEMORY = 1600 * MEGA
-"""What those of the largest workbook may come to, and the process that reads a table [byte]."""
+"""
+What those of the largest workbook may come to, and the process that reads a workbook or signals
+[byte].
+"""
 FOOTER = 2000
 """
 Longest footer of a Parquet file that is read at once [B]: a level takes six bytes, and 400

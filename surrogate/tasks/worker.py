@@ -109,7 +109,8 @@ def describe_failure(error: BaseException) -> str:
     """Return one line about an exception; those that are sentences already stay as they are."""
     text = ' '.join(str(error).split())
     is_sentence = type(error).__name__ in ('InputError', 'SurfaceError')
-    return text if is_sentence else f'{type(error).__name__}: {text}'
+    kind = MemoryError if isinstance(error, MemoryError) else type(error)  # numpy has its own
+    return text if is_sentence else f'{kind.__name__}: {text}'
 
 
 def plain_result(result: Any) -> Any:

@@ -3,13 +3,14 @@
 """
 Files of controls and measuring systems that are no rows of cells: JSON, XML, SHDR, MATLAB, HDF5.
 
-Each becomes a frame with a column for each signal, in memory, and its size is bounded before. A
-signal of other times than its neighbours has rows of its own.
+Each becomes a frame with a column for each signal, and its size is bounded before. What a library
+reads, and a large text, is read by a process of bounded memory. A signal of other times than its
+neighbours has rows of its own.
 
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import importlib
@@ -20,19 +21,23 @@ import re
 from typing import Any
 from xml.etree import ElementTree
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import json_layouts, line_messages, long_form
+from ballscrew_monitor.recordings.tables.apart import check_room, frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
 from ballscrew_monitor.recordings.tables.layouts import (
     ADAPTER,
     Format,
     format_of,
+    FORMATS,
     LONGEST_PERIOD,
     OTHER_ROWS,
     RECORDER,
 )
 from ballscrew_monitor.recordings.tables.quantities import RATED
-from ballscrew_monitor.recordings.tables.unit_names import words_of
+from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, words_of
+from ballscrew_monitor.recordings.words import listed
 import numpy as np
 import polars as pl
 from polars.exceptions import PolarsError
@@ -52,12 +57,21 @@ EXPECTED = {
     'mdf': 'an MDF file with signals of numbers',
 }
 """What a file of each kind must be."""
+OF_LISTS = 'its cells are lists'
 SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue', 'missing_value')
 """Attributes of the CF conventions: a value is the number times the factor plus the offset."""
+BINARY = ('mat', 'hdf', 'tdms', 'mdf')
+"""Kinds that libraries read."""
 GROUPED = ('mat', 'hdf', 'tdms')
 """Kinds whose signals are in groups, as `run.speed`."""
+NUMERIC = 'double single logical int8 int16 int32 int64 uint8 uint16 uint32 uint64'.split()
+"""Classes of arrays of numbers in files of MATLAB."""
+STEP, BEGIN, OFFSET = 'wf_increment', 'wf_start_time', 'wf_start_offset'
+"""Properties of a waveform: its step [s], its start, and its first sample after that [s]."""
 JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
 """How JSON begins; the name of a section in brackets does otherwise."""
+NUMBERS = re.compile(rb'[\[,:"=]\s*-?\d[\d.eE+-]*\s*(?=[\],}"])')
+"""Numbers of JSON, and those in quotes."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 RATES = frozenset(
     'fs rate samplerate samplingrate samplefrequency samplingfrequency frequency'.split()
@@ -128,14 +142,38 @@ def kind_of(head: bytes) -> str:
     return 'long' if form else ''
 
 
+def holds_numbers(head: bytes, kind: str, fewest: int) -> bool:
+    """Return True if a file of a kind that begins so holds signals, so many numbers at least."""
+    return kind not in ('json', 'xml') or len(NUMBERS.findall(head)) >= fewest
+
+
 def read_signals(path: Path, kind: str) -> Signals:
     """Return the signals of a file of a kind; raises InputError."""
-    most = limits.WORKBOOK if kind in ('mat', 'hdf', 'tdms', 'mdf') else limits.TABLE
-    if path.stat().st_size > most:
+    size, most = path.stat().st_size, limits.WORKBOOK if kind in BINARY else limits.TABLE
+    if size > most:
         raise InputError(
             f'log {path} has more than {most // limits.MEGA} MB, allowed for its kind: save its '
             'signals as CSV or Parquet'
         )
+    if kind not in BINARY and size <= limits.TEXT:
+        return _signals(path, kind)
+    frame, told = frame_apart(path, f'{__name__}:write_signals', kind=kind)
+    programs = {one.program: one for one in (*FORMATS, ADAPTER, RECORDER)}
+    return Signals(frame=frame, **{**told, 'program': programs.get(told['program'])})
+
+
+def write_signals(inputs: Mapping[str, str]) -> dict[str, Any]:
+    """Write the signals of a file `path` of a `kind` to `target`; raises InputError."""
+    path, kind = Path(inputs['path']), inputs['kind']
+    signals = _signals(path, kind)
+    with readable(f'log {path} cannot be read', Exception):
+        signals.frame.write_ipc(inputs['target'])
+    names = [field.name for field in dataclasses.fields(signals) if field.name != 'frame']
+    told = {name: getattr(signals, name) for name in names}
+    return told | {'program': signals.program.program if signals.program else ''}
+
+
+def _signals(path: Path, kind: str) -> Signals:
     with readable(f'log {path} cannot be read'), _of_its_kind(path, kind):
         signals = READERS[kind](path)
     if not signals.frame.height:
@@ -175,9 +213,15 @@ def _json(path: Path) -> Signals:
         records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
         factors = ', '.join(_stated_factors(content))
         if not records:
+            nested = {name for name, cells in lists.items() if any(map(_is_nested, cells))}
+            lists = {name: cells for name, cells in lists.items() if name not in nested}
             period, unclear = _period_beside(content, lists)
             return Signals(
-                frame=_side_by_side(lists), factors=factors, period=period, unclear_period=unclear
+                frame=_side_by_side(lists),
+                factors=factors,
+                period=period,
+                unclear_period=unclear,
+                left_out=dict.fromkeys(sorted(nested), OF_LISTS),
             )
         chosen = max(records, key=lambda name: json_layouts.motion_of(lists[name]))
         content = json_layouts.plain_table(lists[chosen])
@@ -186,12 +230,29 @@ def _json(path: Path) -> Signals:
         more_rows = sum(_rows_alike(lists[chosen], lists[name]) for name in others)
     if not _are_all(dict, content):
         raise TypeError
+    nested = {name for one in content for name, cell in one.items() if _is_nested(cell)}
     return Signals(
-        frame=pl.from_dicts(content, infer_schema_length=None),
-        left_out=left_out,
+        frame=_of_records(content, nested),
+        left_out=left_out | dict.fromkeys(sorted(nested), OF_LISTS),
         more_rows=more_rows,
         empty_rows=[at + 1 for at, record in enumerate(content) if not record],
         factors=factors,
+    )
+
+
+def _is_nested(cell: Any) -> bool:
+    return isinstance(cell, list | dict)
+
+
+def _of_records(
+    records: Sequence[Mapping[str, Any]], without: Collection[str] = ()
+) -> pl.DataFrame:
+    """Return records as rows, with a column for each name that one of them holds."""
+    names = {name: None for record in records for name in record if name not in without}
+    check_room(len(records), len(names))
+    return pl.from_dicts(
+        [{name: record.get(name) for name in names} for record in records] if without else records,
+        infer_schema_length=None,
     )
 
 
@@ -325,7 +386,7 @@ def _xml(path: Path) -> Signals:
             rows.append(dict(held))
     counts = Counter(keys.values())
     names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
-    frame = pl.from_dicts(rows, infer_schema_length=None).rename(names, strict=False)
+    frame = _of_records(rows).rename(names, strict=False)
     return Signals(frame=frame, start=start)
 
 
@@ -337,8 +398,9 @@ def _long(path: Path) -> Signals:
 
 
 def _mat(path: Path) -> Signals:
-    from scipy.io import loadmat
+    from scipy.io import loadmat, whosmat
 
+    _check_arrays(shape for _, shape, kind in whosmat(path) if kind in NUMERIC)
     content = loadmat(path, squeeze_me=True, struct_as_record=False)
     held = {key: value for key, value in content.items() if not key.startswith('__')}
     return _arrays(dict(_flattened(held)))
@@ -359,32 +421,37 @@ def _hdf(path: Path) -> Signals:
     h5py = _optional('h5py', path, 'HDF5 and MATLAB 7.3')
     found: dict[str, Any] = {}
     factors: list[str] = []
-    room = limits.WORKBOOK
+    datasets: dict[str, Any] = {}
 
     def visit(name: str, item: Any) -> None:
-        nonlocal room
         called = name.replace('/', '.')
-        if not isinstance(item, h5py.Dataset):
-            factors.extend(_unclear_factors(called, item.attrs))
-            return
-        if item.dtype.kind not in 'iufb' and not item.dtype.names:
-            found[called] = np.broadcast_to(np.void(b' '), item.shape or ())  # which is no number
-            return
-        room -= item.size * max(item.dtype.itemsize, 8)
-        if room < 0:
-            raise Unreadable(f'its arrays up to {name} come to more than {limits.WORKBOOK} bytes')
-        for field in item.dtype.names or ():
-            found[f'{called}.{field}'] = np.squeeze(item[field])
-        if not item.dtype.names:
-            unit = item.attrs.get('unit', item.attrs.get('units', b''))
-            told = unit.decode() if isinstance(unit, bytes) else str(unit)
-            found[f'{called} [{told}]' if told else called] = _scaled(item)
+        if isinstance(item, h5py.Dataset):
+            datasets[called] = item
+        else:
             factors.extend(_unclear_factors(called, item.attrs))
 
     with h5py.File(path, 'r') as file:
         factors.extend(_unclear_factors('', file.attrs))
         file.visititems(visit)
-    signals = _arrays(found)
+        numeric = {
+            called: item
+            for called, item in datasets.items()
+            if item.dtype.kind in 'iufb' or item.dtype.names
+        }
+        _check_arrays(one.shape or () for one in numeric.values() for _ in one.dtype.names or '-')
+        for called, item in datasets.items():
+            shape, is_numeric = item.shape or (), called in numeric
+            if not is_numeric or not _columns_of(shape):  # it is not read
+                found[called] = np.broadcast_to(0.0 if is_numeric else np.void(b' '), shape)
+                continue
+            for field in item.dtype.names or ():
+                found[f'{called}.{field}'] = np.squeeze(item[field])
+            if not item.dtype.names:
+                unit = item.attrs.get('unit', item.attrs.get('units', b''))
+                told = unit.decode() if isinstance(unit, bytes) else str(unit)
+                found[f'{called} [{told}]' if told else called] = _scaled(item)
+                factors.extend(_unclear_factors(called, item.attrs))
+        signals = _arrays(found)
     told = ', '.join(filter(None, [*factors, signals.factors]))
     return dataclasses.replace(signals, factors=told)
 
@@ -407,6 +474,19 @@ def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterable[str]:
     return (f'{of}{told}' for told in _stated_factors(numbers))
 
 
+def _columns_of(shape: Sequence[int]) -> int:
+    """Return how many columns an array makes, 0 for one that is no table."""
+    plain = [count for count in shape if count != 1]
+    columns = min(plain) if len(plain) == 2 else 1
+    return columns if len(plain) < 3 and columns <= limits.COLUMNS else 0
+
+
+def _check_arrays(shapes: Iterable[Sequence[int]]) -> None:
+    """Raise Unreadable if arrays of some shapes come to more than is allowed side by side."""
+    tables = [shape for shape in shapes if math.prod(shape) > 1 and _columns_of(shape)]
+    check_room(max(map(max, tables), default=0), sum(map(_columns_of, tables)))
+
+
 def _arrays(content: Mapping[str, Any]) -> Signals:
     """Return arrays as signals: those of one length, and columns of a matrix, side by side."""
     held: dict[str, Any] = {}
@@ -419,11 +499,10 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
         elif array.ndim == 0:
             periods |= _periods({name: array})
         elif array.ndim == 1 and len(array) > 1:
-            held[name] = array.astype(np.float64)
-        elif array.ndim == 2 and min(array.shape) <= limits.COLUMNS:
+            held[name] = array
+        elif array.ndim == 2 and _columns_of(array.shape):
             tall = array if array.shape[0] >= array.shape[1] else array.T
-            for at in range(tall.shape[1]):
-                held[f'{name} {at + 1}'] = tall[:, at].astype(np.float64)
+            held |= {f'{name} {at + 1}': tall[:, at] for at in range(tall.shape[1])}
         elif array.size > 1:
             left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
     scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
@@ -431,7 +510,7 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
     told = ', '.join(f'{name} = {float(content[name]):g}' for name in [*periods, *others])
     period = math.nan if others else _period_of_rows(periods, held)
     return Signals(
-        frame=_side_by_side(held),
+        frame=_side_by_side(held, np.float64),
         period=period,
         factors=', '.join(_stated_factors(scalars)),
         unclear_period=told if math.isnan(period) else '',
@@ -450,12 +529,15 @@ def _period_of_rows(periods: Mapping[str, float], arrays: Iterable[str]) -> floa
     return period if beside and plain and period <= LONGEST_PERIOD else math.nan
 
 
-def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
-    """Return columns of several lengths as a frame, those of one length together."""
+def _side_by_side(columns: Mapping[str, Any], kind: Any = None) -> pl.DataFrame:
+    """Return columns of several lengths, of a kind, as a frame, those of one length together."""
     lengths = dict.fromkeys(len(column) for column in columns.values())
     height = max(lengths, default=0)
+    check_room(height, len(columns))
     series = [
-        pl.Series(name, column, strict=False).extend_constant(None, height - length)
+        pl.Series(
+            name, column if kind is None else np.asarray(column, kind), strict=False
+        ).extend_constant(None, height - length)
         for length in lengths
         for name, column in columns.items()
         if len(column) == length
@@ -464,29 +546,104 @@ def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
 
 
 def _tdms(path: Path) -> Signals:
-    file = _optional('nptdms', path, 'TDMS', 'npTDMS').TdmsFile.read(path)
-    held: dict[str, Any] = {}
-    periods, groups = set(), file.groups()
-    for group in groups:
-        before = f'{group.name}.' if len(groups) > 1 else ''
-        for channel in group.channels():
+    library = _optional('nptdms', path, 'TDMS', 'npTDMS')
+    with library.TdmsFile.open(path) as file:
+        groups = [group for group in file.groups() if group.channels()]
+        channels = [channel for group in groups for channel in group.channels()]
+        check_room(max(map(len, channels), default=0), len(channels))
+        waves = {channel: Waveform.of(channel.properties) for channel in channels}
+        timed = {channel.group_name for channel, wave in waves.items() if wave}
+        left_out: dict[str, str] = {}
+        held: dict[str, Any] = {}
+        by_name: dict[str, Waveform | None] = {}
+        for channel, wave in waves.items():
+            before = f'{channel.group_name}.' if len(groups) > 1 else ''
             unit, name = channel.properties.get('unit_string', ''), f'{before}{channel.name}'
-            held[f'{name} [{unit}]' if unit else name] = channel[:]
-            if 'wf_increment' in channel.properties:
-                periods.add(float(channel.properties['wf_increment']))
-    unclear = ', '.join(f'wf_increment = {one:g}' for one in sorted(periods))
-    if len(periods) == 1:
-        return Signals(frame=_side_by_side(held), period=periods.pop())
-    return Signals(frame=_side_by_side(held), unclear_period=unclear)
+            if timed and channel.group_name not in timed:
+                left_out[name] = f'its group states no {STEP}, and others do'
+                continue
+            name = f'{name} [{unit}]' if unit else name
+            held[name] = channel[:]
+            if held[name].dtype.kind in 'iufb':
+                by_name[name] = wave
+    return dataclasses.replace(_of_waveforms(held, by_name), left_out=left_out)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Waveform:
+    """Times of the samples of a channel: an `offset` [ns] after a `start`, by a `step` [s]."""
+
+    start: np.datetime64 | None
+    offset: int
+    step: float
+
+    @classmethod
+    def of(cls, properties: Mapping[str, Any]) -> 'Waveform | None':
+        """Return what a channel states, None for one without a step."""
+        step, start = float(properties.get(STEP, 0.0)), properties.get(BEGIN)
+        begin = None if start is None else np.datetime64(start, 'ns')
+        offset = round(float(properties.get(OFFSET, 0.0)) * SECOND)
+        return cls(start=begin, offset=offset, step=step) if 0.0 < step < math.inf else None
+
+
+def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None]) -> Signals:
+    """Return channels of numbers, with a time before those that begin or step as no others do."""
+    by_wave: dict[Waveform | None, list[str]] = {}
+    for name, wave in waves.items():
+        by_wave.setdefault(wave, []).append(name)
+    bare, clocks = by_wave.pop(None, []), [wave for wave in by_wave if wave]
+    starts = {wave.start for wave in clocks}
+    told = '; '.join(f'{STEP} = {wave.step:g} of {listed(by_wave[wave])}' for wave in clocks)
+    if len(clocks) > 1 and (bare or None in starts and len(starts) > 1):
+        lacking = bare or [name for wave in clocks if wave.start is None for name in by_wave[wave]]
+        raise Unreadable(
+            f'its waveforms begin or step apart, {told}, and {listed(lacking)} states no '
+            f'{STEP if bare else BEGIN}: write it into each channel, or save the signals as CSV '
+            'with a column of the time'
+        )
+    if not clocks:
+        return Signals(frame=_side_by_side(held))
+    first = min(clocks, key=lambda wave: _begin(wave))
+    start = '' if first.start is None else str(first.start + np.timedelta64(first.offset, 'ns'))
+    if len(clocks) == 1:
+        unclear = f'{told}, none of {listed(bare)}' if bare else ''
+        period = math.nan if bare else first.step
+        return Signals(
+            frame=_side_by_side(held), period=period, unclear_period=unclear, start=start
+        )
+    columns: dict[str, Any] = {}
+    for wave in clocks:
+        names = by_wave[wave]
+        rows = np.arange(max(len(held[name]) for name in names))
+        begin = (_begin(wave) - _begin(first)) / SECOND
+        columns[f'{BRACKETS.sub("", names[0]).strip()} time [s]'] = begin + wave.step * rows
+        columns |= {name: held[name] for name in names}
+    return Signals(frame=_side_by_side(columns | dict(held)), start=start)
+
+
+def _begin(wave: Waveform) -> int:
+    """Return when the first sample of a waveform is [ns]."""
+    return (0 if wave.start is None else int(wave.start.astype(np.int64))) + wave.offset
 
 
 def _mdf(path: Path) -> Signals:
     file = _optional('asammdf', path, 'MDF').MDF(path)
-    frames = []
-    for signal in file.iter_channels():
-        name = f'{signal.name} [{signal.unit}]' if signal.unit else signal.name
+    groups = file.groups
+    check_room(
+        sum(group.channel_group.cycles_nr for group in groups),
+        sum(len(group.channels) - 1 for group in groups) + 1,
+    )
+    by_time: list[dict[str, Any]] = []
+    counts: Counter[str] = Counter()
+    for signal in file.iter_channels(copy_master=False):
         if signal.samples.dtype.kind in 'iuf' and signal.samples.ndim == 1:
-            frames.append(pl.DataFrame({'time [s]': signal.timestamps, name: signal.samples}))
+            if not by_time or not np.array_equal(by_time[-1]['time [s]'], signal.timestamps):
+                by_time.append({'time [s]': signal.timestamps})
+            counts[signal.name] += 1
+            several = counts[signal.name] > 1
+            name = f'{signal.name} {counts[signal.name]}' if several else signal.name
+            by_time[-1][f'{name} [{signal.unit}]' if signal.unit else name] = signal.samples
+    frames = [pl.DataFrame(columns) for columns in by_time]
     frame = pl.concat(frames, how='diagonal').sort('time [s]') if frames else pl.DataFrame()
     return Signals(frame=frame, start=str(file.header.start_time))
 

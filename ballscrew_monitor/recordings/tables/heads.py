@@ -393,11 +393,7 @@ class _Above:
         self.lines = list(zip(lines, block.rows, strict=False))
         self.text = '\n'.join(line.raw or '\t'.join(line.cells) for line in lines)
         self.program = format_of(self.text)
-        self.wide = [
-            (line, row)
-            for line, row in self.lines
-            if sum(map(bool, row)) > FULL * (self.width - 1) and (len(row) > 1 or self.width == 1)
-        ]
+        self.wide = [(line, row) for line, row in self.lines if self._is_wide(row)]
         self.rows: dict[str, list[str]] = {}
         for _, row in self.wide:
             kind = property_of(row[0])
@@ -414,6 +410,10 @@ class _Above:
             if not _is_of_numbers(row)
         ):
             del self.rows['name']  # a remark: a longer row has more names that are known
+
+    def _is_wide(self, row: Sequence[str]) -> bool:
+        fills = sum(map(bool, row)) > FULL * (self.block.width - 1)
+        return fills and (len(row) > 1 or self.block.width == 1)
 
     def head(self, first: int) -> Head:
         names, named = self._names()
@@ -544,15 +544,14 @@ class _Above:
         if not rows:
             return []
         rows = [one for one in rows if not _is_of_units(one[1])] or rows
-        best = max(rows, key=lambda one: (_known(one[1]), rows.index(one)))
-        best = best if _known(best[1]) else rows[-1]
-        at, row = rows.index(best), best[1]
+        at = max(range(len(rows)), key=lambda at: (_known(rows[at][1]), at))
+        line, row = rows[at]
         above = rows[at - 1][1] if at else []
         if len(set(row)) < len(row) - 1 and len(above) == len(row) and not _is_of_units(above):
             groups = [name or '' for name in above]
             joined = [f'{group} {name}'.strip() for group, name in zip(groups, row)]
             row = joined if len(set(joined)) == len(joined) else row
-        return self._with_groups(best[0], list(row))
+        return self._with_groups(line, list(row))
 
     def _with_groups(self, line: Line, row: list[str]) -> list[str]:
         """Return names with those right above, where a unit or nothing stands below these."""
@@ -669,8 +668,8 @@ class _Above:
 
     def _narrow(self) -> Iterator[tuple[Line, list[str]]]:
         """Yield the lines that say something of the file."""
-        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
-        return ((line, row) for line, row in self.lines if line not in wide)
+        wide = {line.row for line, row in self.wide if sum(map(bool, row)) > 2}
+        return ((line, row) for line, row in self.lines if line.row not in wide)
 
     def _period(self, of_columns: Collection[float]) -> tuple[float, int, str]:
         """
@@ -706,7 +705,7 @@ class _Above:
         cells = [cell for cell in row if cell]
         if len(cells) == 3 and _kind(cells[1]) == 'n' and math.isfinite(period_of(*cells[1:])):
             key, value = cells[0], f'{cells[1]} {cells[2]}'
-        elif (line, row) in self.wide and len(cells) > 2:
+        elif len(cells) > 2 and self._is_wide(row):
             return None
         kind = property_of(key)
         if kind in ('period', 'rate') and value and kind not in self.rows:

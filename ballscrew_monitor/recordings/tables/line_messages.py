@@ -16,6 +16,7 @@ import re
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import names
+from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.long_form import decoded, FEWEST, is_number
 from ballscrew_monitor.recordings.tables.names import read_name
@@ -62,6 +63,7 @@ def read_shdr(path: Path) -> pl.DataFrame:
         if name not in odd and frame[name].is_finite().sum() > 1:
             frames[name] = frame.unique('time', keep='last', maintain_order=True)
     rows = list(_by_axis(frames))
+    check_room(sum(frame.height for frame in rows), 1 + len(frames))
     return pl.concat(rows, how='diagonal').sort('time') if rows else pl.DataFrame()
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 import re
 import statistics
 
+from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.codings import wide_coding
 from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
@@ -128,6 +129,8 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
         raise Unreadable(f'it names more than {limits.COLUMNS} signals')
     of_time, turn = [f'{OWN}time {place}' for place in form.times], f'{OWN}turn'
     rows = rows.with_columns(pl.int_range(pl.len()).over([*of_time, 'name']).alias(turn))
+    height = rows.select(pl.struct(*of_time, turn).n_unique()).item()
+    check_room(height, len(of_time) + rows['name'].n_unique(), limits.TEXT_CELL)
     wide = rows.pivot(on='name', index=[*of_time, turn], values='value', maintain_order=True)
     signals = [name for name in wide.columns if name not in (*of_time, turn)]
     wide = wide.select(*of_time, *signals)

@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read,
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
 from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
+from ballscrew_monitor.recordings.tables.long_form import decoded
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
@@ -42,6 +43,7 @@ FEWEST = 20  # rows of numbers of a log whose ending says nothing
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
+WINDOW = 2**18  # [bytes] of a part that are looked at a time
 PANDAS_INDEX, TIME = '__index_level_0__', 'time'
 """What pandas calls a column of its index, and what that is where it holds moments."""
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
@@ -54,8 +56,8 @@ REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
-AFTER_EMPTY = ('\n', '\r', '"', ' ')
-"""What may follow a separator that ends an empty cell, beside another one."""
+AFTER_EMPTY = '"'
+"""The last of the letters that may follow a sign before an empty cell: ends of lines, blanks."""
 TRIES = (
     3  # parts of a text with cells that are not of their column's type, after which none has it
 )
@@ -194,7 +196,7 @@ class Source:
         Cells of a text are texts, or numbers of the `types`, which may change between two blocks.
 
         """
-        come_to = limits.PARQUET_CELL * self.rows * len(names)
+        come_to = limits.NUMBER_CELL * self.rows * len(names)
         if come_to > self.most:
             raise InputError(
                 f'log {self.path}: {len(names)} columns of {self.rows} rows come to '
@@ -255,14 +257,19 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
 
 
 def is_log(path: Path) -> bool:
-    """Return True if a file holds rows of numbers or signals, whatever its ending."""
+    """Return True if a file begins with rows of numbers or signals, whatever its ending."""
     with contextlib.suppress(InputError):
-        head = _head_of(path)
+        head = _head_of(path, limits.MEGA)
+        if head.startswith(codings.GZIP):
+            head = codings.unpacked(path, limits.MEGA)
         if head.startswith((PARQUET, ZIP)):
             return head.startswith(PARQUET)
-        if kind := foreign.kind_of(head):
-            return bool(foreign.read_signals(path, kind).frame.width)
-        return heads.holds_numbers(_first_lines(_Text.of(path, head))[0], FEWEST)
+        if kind := foreign.kind_of(head[:HEAD]):
+            return foreign.holds_numbers(head, kind, FEWEST)
+        if codings.wide_coding(head):
+            head = decoded(head).encode()
+        text = _Text.of(path, head, head.rstrip(codings.NUL))
+        return heads.holds_numbers(_first_lines(text)[0], FEWEST)
     return False
 
 
@@ -276,10 +283,10 @@ def of_frame(path: Path, frame: pl.LazyFrame, head: Head, rows: int, most: float
     return Source(path=path, head=head, rows=max(rows, 1), read=read, most=most)
 
 
-def _head_of(path: Path) -> bytes:
+def _head_of(path: Path, size: int = HEAD) -> bytes:
     try:
         with path.open('rb') as stream:
-            head = stream.read(HEAD)
+            head = stream.read(size)
     except OSError as error:
         raise InputError(f'log {path} cannot be read: {error.strerror}') from None
     if not head.strip():
@@ -406,14 +413,14 @@ class _Text:
     lines_about: int
 
     @classmethod
-    def of(cls, path: Path, head: bytes) -> '_Text':
-        content, size = codings.decoded(path, head), path.stat().st_size
-        if content is not None:
-            head, size = content[:HEAD], len(content)
+    def of(cls, path: Path, head: bytes, content: bytes | None = None) -> '_Text':
+        content = codings.decoded(path, head) if content is None else content
+        size = path.stat().st_size if content is None else len(content)
+        head = head if content is None else content[:HEAD]
         if codings.NUL in head:
             raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
-        lines = max(head.count(line_end.encode()), 1) * size // len(head)
+        lines = max(head.count(line_end.encode()), 1) * size // max(len(head), 1)
         return cls(path=path, content=content, line_end=line_end, lines_about=max(lines, 1))
 
     def stream(self) -> BinaryIO:
@@ -535,10 +542,14 @@ def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> boo
 
     """
     lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
-    if content.count(separator.encode()) != (width - 1) * lines:
-        return False
-    if not any((separator + mark).encode() in content for mark in (separator, *AFTER_EMPTY)):
-        return True
+    letters, count, is_empty = np.frombuffer(content, np.uint8), 0, False
+    for begin in range(0, len(letters), WINDOW):  # whose arrays stay in the cache
+        part = letters[slice(begin, begin + WINDOW + 1)]
+        signs, low = part == ord(separator), part <= ord(AFTER_EMPTY)
+        count += int(np.count_nonzero(signs[:WINDOW]))
+        is_empty |= bool((signs[:-1] & (signs[1:] | low[1:])).any())
+    if count != (width - 1) * lines or not is_empty:
+        return count == (width - 1) * lines
     return bool((_widths(content, separator, line_end) == width).all())
 
 

@@ -15,23 +15,21 @@ from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import csv
 import dataclasses
-import functools
 import importlib
 from pathlib import Path
 import re
 import sys
-import tempfile
 from typing import Any, IO
 from xml.parsers import expat
 import zipfile
 import zlib
 
+from ballscrew_monitor.recordings.tables.apart import frame_apart
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import find_head, holds_numbers, Line
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 from surrogate.files import InputError, limits
-from surrogate.tasks.child import result_apart
 
 CELL_SIZE = limits.XLSX_CELL
 LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table
@@ -72,20 +70,8 @@ def read_sheet(path: Path, name: str = '') -> Sheet:
     """Return a sheet of a workbook; raises InputError, ImportError without its reader."""
     importlib.import_module('fastexcel')  # it is optional
     hidden = _check_size(path)
-    state = path.stat()
-    return _read_apart(path.resolve(), str(path), name, hidden, state.st_mtime_ns, state.st_size)
-
-
-@functools.lru_cache(maxsize=1)  # a log is opened again and again; its cells are a file in memory
-def _read_apart(place: Path, shown: str, name: str, hidden: int, *state: int) -> Sheet:
-    with tempfile.TemporaryDirectory(prefix='ballscrew_sheet_') as folder:
-        target = Path(folder) / 'cells.arrow'
-        inputs = {'path': shown, 'target': str(target), 'sheet': name}
-        failure = f'log {shown} cannot be read'
-        task = f'{__name__}:write_cells'
-        read = result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
-        cells = pl.read_ipc(target)  # its memory is the file, which stays though its name goes
-        return Sheet(cells=cells, hidden=hidden, **read)
+    cells, told = frame_apart(path, f'{__name__}:write_cells', sheet=name)
+    return Sheet(cells=cells, hidden=hidden, **told)
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.tasks.worker import (
+    describe_failure,
     listener,
     plain_result,
     run_task,
@@ -139,3 +140,9 @@ def test_a_signal_in_a_callback_of_c_ends_the_task_after_it(tmp_path):
         process.wait(timeout=DEADLINE)
         assert (process.returncode, process.stderr.read()) == (1, '')
     assert (tmp_path / 'removed').exists()
+
+
+def test_all_that_lacks_memory_is_told_as_such():
+    with pytest.raises(MemoryError) as caught:
+        np.zeros(2**50, np.uint8)  # numpy has an error of its own
+    assert describe_failure(caught.value).startswith('MemoryError: ')

@@ -5,11 +5,13 @@
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.line_messages import read_shdr
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
 import numpy as np
 import pytest
+from surrogate.files import limits
 
 COUNT, STEP = 300, 0.01
 TIME = np.arange(COUNT) * STEP
@@ -112,3 +114,13 @@ def test_a_signal_with_numbers_of_another_form_is_left_out(tmp_path):
     adapter(path)
     path.write_text(path.read_text().replace('X1load|60', "X1load|1'060"))
     assert source_of(path).names() == ['time', 'X1actm']
+
+
+def test_the_table_that_changes_make_is_counted_before(tmp_path, refused, monkeypatch):
+    path = tmp_path / 'mill.shdr'
+    lines = [f'2025-07-14T11:59:50.{row:03d}Z|{"XYZ"[row % 3]}act|{row}' for row in range(60)]
+    path.write_text('\n'.join(lines) + '\n')
+    monkeypatch.setattr(limits, 'SPARSE', 60 * 4 * limits.NUMBER_CELL)
+    assert read_shdr(path).shape == (60, 4)
+    monkeypatch.setattr(limits, 'SPARSE', 60 * 4 * limits.NUMBER_CELL - 1)
+    refused('wide', source_of, path)

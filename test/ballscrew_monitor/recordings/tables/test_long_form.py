@@ -13,6 +13,7 @@ from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.times import joined
 import numpy as np
 import pytest
+from surrogate.files import limits
 
 STEP, COUNT = 0.01, 500
 TIME = np.arange(COUNT) * STEP
@@ -217,3 +218,14 @@ def test_an_id_is_the_name_of_a_signal_where_nothing_else_is(tmp_path):
     rows = [f'{at},{name},{at % 3}' for at in range(20) for name in ('z_speed_mm_s', 'z_force_N')]
     path.write_text('\n'.join(['time,id,val', *rows]))
     assert source_of(path).names() == ['time', 'z_speed_mm_s', 'z_force_N']
+
+
+def test_the_table_that_values_make_is_counted_before(tmp_path, refused, monkeypatch):
+    """A value a line of signals in turn: a row for each, in which all others are empty."""
+    path = tmp_path / 'log.csv'
+    rows = [f'{at},x_speed_{at % 20},{at}' for at in range(200)]
+    path.write_text('\n'.join(['time,tag,value', *rows]))
+    monkeypatch.setattr(limits, 'SPARSE', 200 * 21 * limits.TEXT_CELL)
+    assert len(source_of(path).names()) == 21
+    monkeypatch.setattr(limits, 'SPARSE', 200 * 21 * limits.TEXT_CELL - 1)
+    refused('wide', source_of, path)

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables in whatever form a machine writes them: one log, read alike; and bounds of all."""
 
+import gzip
 import io
 import zipfile
 
-from ballscrew_monitor.recordings.tables import sources
+from ballscrew_monitor.recordings.tables import codings, foreign, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
@@ -204,3 +205,32 @@ def test_parts_of_a_text_leave_no_trace(tmp_path, monkeypatch, end, last):
     ]
     assert whole[0] == ('1', '2')
     assert whole[-1] == ('9', '10')
+
+
+LOG = 't,v\n' + ''.join(f'{row},{row % 7}.5\n' for row in range(40))
+HEADS = {
+    'csv': (LOG.encode(), True),
+    'wide csv': (LOG.encode('utf-16'), True),
+    'text': (b'twelve nuts, please\n' * 40, False),
+    'records': (b'[' + b'{"t": 0.5, "v": "1.5"},' * 20, True),
+    'lists': (b'{"v": [' + b'1, -2.5e3, ' * 20, True),
+    'settings': (b'{"name": "mill", "version": "1.2.3", "axes": [1, 2, 3],', False),
+    'trace': (b'<?xml version="1.0"?><t>' + b'<rec time="0.5" f1="1.5"/>' * 20, True),
+    'page': (b'<!DOCTYPE html><html lang="en"><p>' + b'12 nuts' * 40, False),
+    'matlab': (b'MATLAB 5.0 MAT-file'.ljust(128), True),
+}
+
+
+@pytest.mark.parametrize('kind', HEADS)
+@pytest.mark.parametrize('packed', [False, True])
+def test_the_begin_of_a_file_tells_whether_it_is_a_log(kind, packed, tmp_path, monkeypatch):
+    """No reader of signals is called, and of a text or a packed file the rest is not read."""
+    head, holds = HEADS[kind]
+    path = tmp_path / 'log.rec'
+    rest = bytes(range(1, 256)) * 9000  # which is neither, nor may it be packed much
+    monkeypatch.setattr(foreign, 'read_signals', None)
+    monkeypatch.setattr(limits, 'MEGA', max(len(head), 512) // 64 * 64)
+    content = gzip.compress(head + rest)[:-2000] if packed else head + rest
+    path.write_bytes(content)
+    monkeypatch.setattr(codings, 'decoded', None)
+    assert sources.is_log(path) is holds

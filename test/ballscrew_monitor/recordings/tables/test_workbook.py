@@ -10,7 +10,7 @@ import types
 import zipfile
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.recordings.tables import workbook
+from ballscrew_monitor.recordings.tables import apart, workbook
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -169,9 +169,9 @@ def test_a_reader_that_needs_too_much_memory_is_a_sentence(book, refused, monkey
 
 def test_a_workbook_is_read_once_as_long_as_it_is_the_same(book, monkeypatch):
     path = book()
-    cells = read_sheet(path)
-    monkeypatch.setattr(workbook, 'result_apart', None)
-    assert read_sheet(path) is cells
+    cells = read_sheet(path).cells
+    monkeypatch.setattr(apart, 'result_apart', None)
+    assert read_sheet(path).cells is cells
 
 
 def test_what_a_cell_comes_to_is_that_of_the_whole_sheet(book, monkeypatch, refused):
