@@ -22,7 +22,7 @@ FLOORS = 'film_floor_low', 'film_floor_high'
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ScrewCase:
-    """A screw with its oil at an operating point, and the side whose onset it has, if one alone."""
+    """A screw with its oil at an operating point, and the side whose onset it has, if one."""
 
     screw: Screw
     lubricant: Lubricant
