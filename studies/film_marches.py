@@ -43,8 +43,6 @@ from surrogate.raceway.dry_contact import press
 from surrogate.raceway.fractal import Lay
 from surrogate.raceway.stated import State
 from surrogate.raceway.tile import draw_tile
-from surrogate.surface.file import read
-from surrogate.surface.shipped import SHIPPED
 from surrogate.tasks.table import read_table, write_table
 from surrogate.units import ZERO_CELSIUS
 from topography_onset import cut_alone
@@ -295,8 +293,8 @@ def held_out_misses(rows: Sequence[Marched]) -> dict[str, list[float]]:
     """
     Return how far marched films lie from those of the law, as logarithms, by the lay.
 
-    Of coarse strips that chose neither its form nor its constants: the marches held out, strips of
-    own screws, and those that shipped surfaces carry.
+    Of coarse strips that chose neither its form nor its constants: the marches held out and the
+    strips of own screws.
 
     """
     misses = {lay: [] for lay in FILM_BANDS}  # type: dict[str, list[float]]
@@ -306,12 +304,6 @@ def held_out_misses(rows: Sequence[Marched]) -> dict[str, list[float]]:
     for strip in read_table(own_strips.RESULTS, own_strips.Strip):
         if strip.strip != FINER and math.isfinite(strip.film_factor):
             misses[strip.lay].append(math.log(strip.film_factor))
-    for path in sorted(SHIPPED.glob('*.npz')):
-        header = read(path).header
-        for name, strip in header.get('march', {}).items():
-            if name != FINER and strip['film_factor'] is not None:
-                lay = header['inputs']['screw']['roughness']['lay']
-                misses[lay].append(math.log(strip['film_factor']))
     return misses
 
 

@@ -13,11 +13,13 @@ from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import Roughness
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_point, onset_side, run_in_at, with_raceway
+from surrogate.screw.screw_onset import onset_point, run_in_at, side_onsets, with_raceway
 
 Part = Literal['point', 'lubricant', 'screw', 'roughness']
 Ends = tuple[float, float]
 FLOORS = 'film_floor_low', 'film_floor_high'
+APART = 1.05
+"""Onset of a side over that of the other from which on other raceways keep their order [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,18 +37,20 @@ class ScrewCase:
         return self.screw.roughness
 
     def changed(self, part: Part, **values: float) -> 'ScrewCase':
-        """Return a case with other values [SI] in one of its parts."""
+        """Return a case with other values [SI] in one of its parts; oil and point cost no side."""
         if part == 'roughness':
             return replace(self, screw=with_raceway(self.screw, **values))
-        return replace(self, **{part: replace(getattr(self, part), **values)})
+        side = self.side if part == 'screw' else None
+        return replace(self, **{part: replace(getattr(self, part), **values)}, side=side)
 
     @property
     def faster_side(self) -> 'ScrewCase':
-        """Case of the side where contact begins faster; another raceway costs half as much."""
+        """Case of the side where contact begins faster, `APART` or more: half of the work."""
         oil = oil_at(self.lubricant, self.point.temperature)
         floor, load = self.lubricant.film_floor, self.point.opposing_load
-        _, side = onset_side(Contacts.of(self.screw), oil, floor, load)
-        return replace(self, side=side)
+        sides = side_onsets(Contacts.of(self.screw), oil, floor, load)
+        slower, faster = sorted(sides, key=sides.__getitem__)
+        return replace(self, side=faster if sides[faster] > APART * sides[slower] else None)
 
     @property
     def onset(self) -> float:

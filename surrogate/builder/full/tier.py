@@ -18,7 +18,6 @@ from surrogate.builder.full.march import march_task, march_tasks, marched_film
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
-from surrogate.raceway.stated import Roughness
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
@@ -81,16 +80,13 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    With `march`, strips of the raceway are marched first, stand in the header and correct the law,
-    whatever marches the sheet states.
+    With `march`, strips of the raceway are marched first, stand in the header and correct the law.
     Says on stderr where the accuracy aimed at was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
     """
     began = time.perf_counter()
-    if march:
-        screw = with_raceway(screw, **dict.fromkeys(Roughness.MARCHED))
     with TaskStore(out, WORK) as store:
         run = TaskRun(pool=pool, store=store)
         tasks = march_tasks(screw, lubricant) if march else {}
