@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
+import own_strips
 from surrogate.asperities.law import FILM_BANDS, FILM_POWER
 from surrogate.asperities.running_in import RunningContact, tile_size
 from surrogate.asperities.strips import raceway_strips, RacewayStrip
@@ -31,6 +32,7 @@ from surrogate.asperities.topography import (
     WAVE_POWER,
 )
 from surrogate.asperities.topography_onset import COARSE_FILM, film_at_onset, FLOORS
+from surrogate.builder.full.march import FINER
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.moving import SpeedRamp
 from surrogate.formulas.geometry import Side
@@ -287,6 +289,36 @@ def told_over_marched(row: Marched) -> float:
     return float(film) / COARSE_FILM / (1e-9 * row.film_nm)
 
 
+def held_out_misses(rows: Sequence[Marched]) -> dict[str, list[float]]:
+    """
+    Return how far marched films lie from those of the law, as logarithms, by the lay.
+
+    Of coarse strips that chose neither its form nor its constants: the marches held out and the
+    strips of own screws.
+
+    """
+    misses = {lay: [] for lay in FILM_BANDS}  # type: dict[str, list[float]]
+    for row in rows:
+        if row.role == 'held out':
+            misses[row.lay].append(-math.log(told_over_marched(row)))
+    for strip in read_table(own_strips.RESULTS, own_strips.Strip):
+        if strip.strip != FINER and math.isfinite(strip.film_factor):
+            misses[strip.lay].append(math.log(strip.film_factor))
+    return misses
+
+
+def nine_of_ten(misses: Sequence[float]) -> float:
+    """
+    Return the factor within which a further strip lies nine times of ten, up to a twentieth [-].
+
+    By split conformal prediction (Vovk, Gammerman, Shafer 2005): of n misses as logarithms the
+    ceil(0.9 (n + 1))-th.
+
+    """
+    place = math.ceil(0.9 * (len(misses) + 1))
+    return math.ceil(20 * math.exp(sorted(map(abs, misses))[place - 1])) / 20
+
+
 def slope_of(row: Marched) -> float:
     """Return the slope of film over that of the law in speed [-]; its floors do not fall."""
     floors = FLOORS * row.floor_nm / (told_over_marched(row) * row.film_nm)
@@ -310,6 +342,12 @@ def report(rows: Sequence[Marched]) -> Iterator[str]:
                 f'{100 * math.sqrt(np.mean(off**2)):.0f} %, '
                 f'{int((np.abs(off) < math.log(band)).sum())} within {band:g}'
             )
+    for lay, misses in held_out_misses(rows).items():
+        off = np.array(misses)
+        yield (
+            f'all held out, {lay}: {off.size}, mean {math.exp(off.mean()):.2f}, rms '
+            f'{100 * math.sqrt(np.mean(off**2)):.0f} %, nine of ten within {nine_of_ten(misses):g}'
+        )
 
 
 def main() -> None:

@@ -50,10 +50,14 @@ class Contacts:
         vars(other)['law'] = law
         return other
 
+    def on_side(self, side: Side) -> 'Contacts':
+        """Return the same contacts with the raceway, and so the law, of one side alone."""
+        return replace(self, running={side: self.running[side]})
+
     @property
     def working_load(self) -> float:
         """Largest working load [N], that which unloads a nut if not stated."""
-        return self.running['screw'].working_load
+        return next(iter(self.running.values())).working_load
 
     @property
     def working_pressure(self) -> float:

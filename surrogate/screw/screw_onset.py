@@ -94,11 +94,18 @@ def onset_side(
     opened: Contacts, oil: ContactLubricant, floor: float, load: float
 ) -> tuple[float, Side]:
     """Return the faster onset of both sides [m/s] under an axial load [N], and its side."""
+    return max((speed, side) for side, speed in side_onsets(opened, oil, floor, load).items())
+
+
+def side_onsets(
+    opened: Contacts, oil: ContactLubricant, floor: float, load: float
+) -> dict[Side, float]:
+    """Return the onset of each side [m/s] under an axial load [N]."""
     force = loaded_force(opened.sheet, load)
-    return max(
-        (onset.speed(opened.geometry[side], force, oil, floor), side)
+    return {
+        side: onset.speed(opened.geometry[side], force, oil, floor)
         for side, onset in opened.law.onsets.items()
-    )
+    }
 
 
 def law_band(

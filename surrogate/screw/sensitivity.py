@@ -68,7 +68,7 @@ def sensitivity_record(
     """
     if not screw.composite_rms:
         raise InputError('screw: raceway and ball are smooth, allowed is a rough one')
-    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
+    case = ScrewCase(screw=screw, lubricant=lubricant, point=point).faster_side
     used = [varied for varied in inputs if varied.bounds(case)]
     progress(0, len(used))
     stated, rows, sheet = _outcome(case), [], screw.roughness

@@ -73,3 +73,23 @@ def test_the_law_of_a_strip_is_that_of_its_columns(marches, rows):
     strip = marches.strip_of(next(case for case in marches.CASES if case.march == row.march))
     by_film = math.log(marches.told_over_marched(row)) / marches.slope_of(row)
     assert math.log(strip.told / row.onset_m_s) == pytest.approx(by_film, abs=0.05)
+
+
+def test_the_stated_bands_are_those_of_all_strips_that_were_held_out(marches, rows):
+    """They hold nine of ten of them for each lay, with room for one more strip."""
+    misses = marches.held_out_misses(rows.values())
+    for lay, band in FILM_BANDS.items():
+        assert len(misses[lay]) >= 18
+        assert sum(abs(off) < math.log(band) for off in misses[lay]) >= 0.9 * len(misses[lay])
+        assert marches.nine_of_ten(misses[lay]) == pytest.approx(band)
+
+
+def test_a_further_strip_lies_in_the_stated_band_nine_times_of_ten(marches):
+    """Normal misses of 18 and of 60 strips, one more drawn each time; never below 90 %."""
+    generator = np.random.default_rng(46)
+    for count in (18, 60):
+        draws = 0.1 * generator.standard_normal((2000, count + 1))
+        inside = [
+            abs(last) <= math.log(marches.nine_of_ten(known)) for *known, last in draws.tolist()
+        ]
+        assert 0.89 < np.mean(inside) < 0.97

@@ -4,6 +4,7 @@
 
 import dataclasses
 import struct
+from types import SimpleNamespace
 
 from ballscrew_monitor.report import picture
 from ballscrew_monitor.report.log_page import maps_of
@@ -70,6 +71,15 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     assert (shade.get_x(), shade.get_width()) == pytest.approx((0.2, 0.4))
     lowest = next(strip for title, strip in strips.items() if title.startswith('RCS'))
     assert set(lowest.lines[0].get_ydata()) == {1e-4}  # what is smaller is drawn on it
+
+
+def test_a_long_verdict_keeps_within_the_width_of_the_picture(judged, monkeypatch):
+    verdict = SimpleNamespace(whole='outside ' * 40, contact='contact ' * 40)
+    monkeypatch.setattr(picture, 'verdict_of', lambda case: verdict)
+    (part,) = picture.figure_log(judged.log(judged.case([judged.rows()])), [small_map()]).subfigs
+    lines = part.subfigs[0].axes[0].get_title().splitlines()
+    assert ' '.join(lines).count('outside') == 40
+    assert max(map(len, lines)) <= picture.LINE
 
 
 def test_colours_are_those_of_the_page(judged):

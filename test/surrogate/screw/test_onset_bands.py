@@ -93,6 +93,23 @@ def test_onset_and_sensitivity_show_this_band(own, oil, bands):
     assert found['measure'][0]['measurement'] == bands.narrowed[0]
 
 
+@pytest.mark.parametrize(('side', 'grooves'), [('nut', (0.505, 0.6)), ('screw', (0.6, 0.505))])
+def test_other_raceways_have_the_onset_of_both_sides_on_that_which_is_clearly_faster(
+    screw, oil, side, grooves
+):
+    """That of the wider groove; another oil, which costs nothing, is told on both sides."""
+    uneven = replace(screw, conformity_screw=grooves[0], conformity_nut=grooves[1])
+    point = OperatingPoint(speed=0.0, load=0.0, temperature=KELVIN)
+    both = ScrewCase(screw=uneven, lubricant=oil, point=point)
+    alone = both.faster_side
+    assert (both.side, alone.side) == (None, side)
+    for end in BY_NAME['rms'].bounds(both):
+        one, two = (BY_NAME['rms'].at(case, end) for case in (alone, both))
+        assert one.side == side
+        assert one.onset == two.onset
+    assert BY_NAME['viscosity'].at(alone, 0.1).side is None
+
+
 def test_a_calibrated_onset_has_the_band_of_its_calibration(screw, oil):
     sheet = with_raceway(screw, onset_band=1.25, calibrated='2026-11-24')
     found = onset_bands(sheet, oil, 0.0, KELVIN)

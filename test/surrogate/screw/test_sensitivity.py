@@ -219,8 +219,8 @@ def test_the_page_says_where_the_law_is_off_by_more_than_its_band(screw, oil, re
     assert f'\n  law        {says("rms_0_04")}\n' in sensitivity_page(fine)
 
 
-def test_half_and_double_of_the_working_load_are_in_the_band_of_what_ran_in(screw, oil):
-    """Assumed or stated; a trace of the raceway as it runs takes it out."""
+def test_half_and_double_of_the_working_load_move_what_ran_in_by_less_than_a_fifth(screw, oil):
+    """Assumed or stated, so that they are in no band; a raceway traced as it runs has none."""
     load = BY_NAME['working_load']
     case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
     assert load.bounds(case) is None
@@ -235,11 +235,9 @@ def test_half_and_double_of_the_working_load_are_in_the_band_of_what_ran_in(scre
     row = row_of(found, 'working_load_N')
     assert [row[end] for end in ('low', 'stated', 'high')] == [500.0, 1000.0, 2000.0]
     light, heavy = row['onset_factors']
-    assert light > 1 > heavy > 0
+    assert 1.2 > light > 1 > heavy > 0.8
     heat = row_of(found, 'temperature_degC')['onset_factors']
-    factors = [('', heat), ('', [light, heavy])]
-    assert found['limit_band'] == pytest.approx(unknown_band(factors))
-    assert load.measured in [step['measurement'] for step in found['measure']]
+    assert found['limit_band'] == pytest.approx(unknown_band([('', heat)]))
 
 
 def test_an_end_that_the_model_refuses_is_not_known(screw, oil, refused):
