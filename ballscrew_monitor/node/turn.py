@@ -128,7 +128,7 @@ class TurnReader:
         found, odd = _find(burst, slots, reading.ahead)
         events = _samples(found, slots)
         for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
-            _, slot, value, stamp, now, missing, most_ahead = (one[at].item() for one in found)
+            _, slot, value, stamp, now, missing, most_ahead = (part[at].item() for part in found)
             lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot].source
             events[at] = _record(
                 source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
