@@ -289,9 +289,13 @@ def _head_of(path: Path, size: int = HEAD) -> bytes:
             head = stream.read(size)
     except OSError as error:
         raise InputError(f'log {path} cannot be read: {error.strerror}') from None
+    _check_begin(path, head)
+    return head
+
+
+def _check_begin(path: Path, head: bytes) -> None:
     if not head.strip():
         raise InputError(f'log {path} is empty, it must be a table or a file of signals')
-    return head
 
 
 def _parquet(path: Path) -> Source:
@@ -417,10 +421,11 @@ class _Text:
         content = codings.decoded(path, head) if content is None else content
         size = path.stat().st_size if content is None else len(content)
         head = head if content is None else content[:HEAD]
+        _check_begin(path, head)
         if codings.NUL in head:
             raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
-        lines = max(head.count(line_end.encode()), 1) * size // max(len(head), 1)
+        lines = max(head.count(line_end.encode()), 1) * size // len(head)
         return cls(path=path, content=content, line_end=line_end, lines_about=max(lines, 1))
 
     def stream(self) -> BinaryIO:

@@ -234,3 +234,15 @@ def test_the_begin_of_a_file_tells_whether_it_is_a_log(kind, packed, tmp_path, m
     path.write_bytes(content)
     monkeypatch.setattr(codings, 'decoded', None)
     assert sources.is_log(path) is holds
+
+
+@pytest.mark.parametrize(
+    'content',
+    [b' \n', bytes(5000), gzip.compress(b''), gzip.compress(bytes(9))],
+    ids=['blanks', 'zeros', 'packed nothing', 'packed zeros'],
+)
+def test_a_file_that_holds_nothing_is_told_so(content, tmp_path, refused):
+    path = tmp_path / 'log.csv'
+    path.write_bytes(content)
+    refused('nothing', sources.source_of, path)
+    assert not sources.is_log(path)
