@@ -374,7 +374,7 @@ class Intake(Waitable):
         """
         if heard:
             if self.is_compiled:
-                self._hand_over_burst(Burst.of(heard))
+                self._hand_over_burst(Burst.of(heard, self.topics.values()))
             else:
                 self._hand_over_each(heard)
             heard.clear()

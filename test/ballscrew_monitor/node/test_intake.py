@@ -253,6 +253,7 @@ def test_a_leap_of_simulated_time_ends_a_turn_that_is_judged_compiled(bench, mon
     assert turns == [[9 * SECOND, 10 * SECOND], [500 * SECOND], [20 * SECOND]]
     assert steps == [489 * SECOND, -481 * SECOND]
     assert intake.counted == 4
+    assert len(bench.intake._turns._slots.slots) == 2  # those of the load too, which is silent
 
 
 @pytest.mark.parametrize('hours', [1, -1])
