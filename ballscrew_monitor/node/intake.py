@@ -314,6 +314,16 @@ class Intake(Waitable):
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
+        if self._compiled is None:
+            return self._drain() > 0
+        self._compiled.at_rest.clear()
+        try:
+            return self._drain() > 0
+        finally:
+            self._compiled.at_rest.set()
+
+    def _drain(self) -> int:
+        """Hand over all that waits, oldest first; return how many messages that was."""
         begin, step = time.monotonic(), 0
         if self._clock is None:  # by how much [ns] the clock of the system was set
             before = time.monotonic_ns()
@@ -325,7 +335,7 @@ class Intake(Waitable):
             self._worked(now - begin, messages)
             if self._compiled is not None:
                 self._compiled.count(events, now)
-        return messages > 0
+        return messages
 
     def _drain_at_once(self) -> tuple[int, int]:
         """Hand over all that waits as one turn; return how many messages and events that was."""
