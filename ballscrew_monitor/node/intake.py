@@ -56,7 +56,7 @@ from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
 CLOCK = '/clock'
-PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
+PAUSE = 3.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 4e-5  # [s] the same for each topic, twenty times what a look at it takes
 LONGER = 8.0  # times the pause while turns are judged compiled: the larger they are the better
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
