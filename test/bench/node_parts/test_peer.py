@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is missing is counted for each topic, between moments at which nothing waits."""
+"""Missing messages are counted for each topic, between moments at which nothing waits."""
 
 from ballscrew_msgs.msg import BallScrewState, InputHealth
 from node_parts import peer
