@@ -32,7 +32,7 @@ class Burst(NamedTuple):
 
     @classmethod
     def of(cls, heard: Sequence[Heard], topics: Iterable[Topic] = ()) -> 'Burst':
-        """Return messages heard one by one; `topics` that have none come first, in order."""
+        """Return messages heard one by one; `topics` come first, in order, also without any."""
         arrivals = [arrival for arrival, _, _ in heard]
         named = (*topics, *(arrival.topic for arrival in arrivals))
         known = {topic.name: topic for topic in named}
