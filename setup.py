@@ -117,6 +117,7 @@ setup(
             'pytest-timeout>=2.2',
             'pytest-xdist>=3.5',
             'rosbags>=0.10',
+            'rosdep>=0.25',
             *LINTERS,
         ],
     },

@@ -14,6 +14,7 @@ the input to the reception of its state, without the time that this process take
 import argparse
 from collections.abc import Callable, Iterator
 import contextlib
+import dataclasses
 import json
 import os
 from pathlib import Path
@@ -29,7 +30,7 @@ from node_parts.peer import axis_names, Peer, topic
 from node_parts.results import Findings, HEAD, line_of, report, write
 import rclpy
 
-LOADING = 10.0  # [s] in which the node loads what judges fast inputs
+LOADING = 10.0  # [s] in which the node loads what judges fast inputs, a turn of its own
 TIMEOUT = 0.3  # [s] after it a tick tells the last counts
 BARE = Path(__file__).parent / 'node_parts' / 'bare.py'
 
@@ -82,8 +83,9 @@ def measure(domain: int, asked: argparse.Namespace) -> Findings:
             found.starts.append((axes, start))
             for rate in asked.rates:
                 if 2 * axes * rate >= COMPILED_FROM:
-                    node.run(rate, LOADING)
-                    node.settle()
+                    loading = node.take_turn(rate, LOADING)
+                    found.turns.append(dataclasses.replace(loading, kind='loads'))
+                    print(line_of(found.turns[-1:]), flush=True)
                 for _ in range(asked.pairs):
                     for peer in (bare, node):
                         found.turns.append(peer.take_turn(rate, asked.seconds))

@@ -15,6 +15,7 @@ from pathlib import Path
 import statistics
 import sys
 import tempfile
+import threading
 import time
 from typing import Any
 
@@ -39,7 +40,7 @@ FIRST = 5  # turns that do not count
 class Always:
     """Turns that are always judged compiled."""
 
-    are_due = True
+    are_due, at_rest = True, threading.Event()
 
     def count(self, events: int, now: float) -> None:
         """Take no note of it."""

@@ -45,7 +45,7 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'results'),
+    ('compiler', 'units', 'files', 'results'),
     ('plotting',),
     ('raceway',),
     ('parameters', 'surface'),

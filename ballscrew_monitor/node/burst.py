@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages of a turn by columns, in the order of arrival."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from ballscrew_monitor.judge.records import NOT_KNOWN
@@ -31,13 +31,14 @@ class Burst(NamedTuple):
     numbers: Sequence[int]
 
     @classmethod
-    def of(cls, heard: Sequence[Heard]) -> 'Burst':
-        """Return messages that were heard one by one."""
+    def of(cls, heard: Sequence[Heard], topics: Iterable[Topic] = ()) -> 'Burst':
+        """Return messages heard one by one; `topics` come first, in order, also without any."""
         arrivals = [arrival for arrival, _, _ in heard]
-        topics = {arrival.topic.name: arrival.topic for arrival in arrivals}
-        places = {name: place for place, name in enumerate(topics)}
+        named = (*topics, *(arrival.topic for arrival in arrivals))
+        known = {topic.name: topic for topic in named}
+        places = {name: place for place, name in enumerate(known)}
         return cls(
-            topics=[*topics.values()],
+            topics=[*known.values()],
             topic=np.array([places[arrival.topic.name] for arrival in arrivals], np.intp),
             place=np.arange(len(heard)),
             now=np.array([now for _, now, _ in heard], np.int64),

@@ -4,11 +4,15 @@
 Choice of how the turns of a node are judged: compiled if events come fast and code is loaded.
 
 The code is compiled into its cache by a process of its own and loaded by a thread, so that the
-judgement goes on meanwhile, interpreted. It takes memory only where it is used.
+judgement goes on meanwhile, interpreted. Of the interpreter, which both share, the thread takes
+what the judgement leaves: it begins each module that it imports when no message waits. It takes
+memory only where it is used.
 
 """
 
 from collections.abc import Callable, Mapping
+import contextlib
+import sys
 import threading
 from typing import Any
 
@@ -17,6 +21,8 @@ from surrogate.tasks.child import result_apart
 COMPILED_FROM = 5000.0
 """Events of all inputs in a second [1/s] from which on turns are judged compiled."""
 SPAN = 1.0  # [s] over which they are counted
+LONGEST_WAIT = 0.02  # [s] of the loading thread before a module, if messages wait at all times
+NICENESS = 10  # of the process that compiles
 NOT_COMPILED = (
     'messages come faster than {:g} in a second and are judged without compiled code, so some may '
     'be lost ({}): install numba, and let NUMBA_CACHE_DIR name a folder that the node may write to'
@@ -39,8 +45,13 @@ class CompiledTurns:
     """Decides how turns are judged, by what arrives."""
 
     def __init__(self, warn: Callable[[str], object]) -> None:
-        """Say by `warn`, once, why nothing is compiled where it should be."""
-        self._warn = warn
+        """
+        Say by `warn`, once, why nothing is compiled where it should be.
+
+        `at_rest` is to be set while no message waits.
+
+        """
+        self._warn, self.at_rest = warn, threading.Event()
         self._begin, self._count = 0.0, 0
         self._fast = self._loaded = self._warned = False
         self._problem = ''
@@ -66,11 +77,21 @@ class CompiledTurns:
             self._warned = True
             self._warn(NOT_COMPILED.format(COMPILED_FROM, self._problem))
 
+    def find_spec(self, name: str, *place: object) -> None:
+        """Find no module; the thread that loads waits, before each one, until nothing waits."""
+        if threading.current_thread() is self._thread:
+            self.at_rest.wait(LONGEST_WAIT)
+
     def _load(self) -> None:
         """Let a process fill the cache, and load what lies there."""
         try:
-            result_apart(f'{__name__}:load', {}, memory=0, failure='the judgement is not compiled')
+            failure = 'the judgement is not compiled'
+            result_apart(f'{__name__}:load', {}, memory=0, failure=failure, niceness=NICENESS)
+            sys.meta_path.insert(0, self)
             load({})
             self._loaded = True
         except Exception as error:  # whatever a compiler raises: the node goes on interpreted
             self._problem = str(error) or type(error).__name__
+        finally:
+            with contextlib.suppress(ValueError):
+                sys.meta_path.remove(self)

@@ -52,7 +52,8 @@ class FreezeFrame:
 
     def _keep(self, row: Any) -> None:
         stamp, speed, load, temperature, *others = self._read(row)
-        self._rows.append((stamp, speed, load, celsius(temperature), *others))
+        quantities = speed, load, celsius(temperature), *others
+        self._rows.append((stamp, *map(_short, quantities)))
 
     def facts(self, stamp: int) -> dict[str, list[float]]:
         """
@@ -64,7 +65,7 @@ class FreezeFrame:
         rows = [row for row in self._rows if 0 <= stamp - row[0] <= SPAN]
         columns = {'time_s': [round(seconds(row[0] - stamp), 3) for row in rows]}
         for at, name in enumerate(QUANTITIES, start=1):
-            columns[name] = [_short(row[at]) for row in rows]
+            columns[name] = [row[at] for row in rows]
         return columns
 
 

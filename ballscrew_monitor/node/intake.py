@@ -56,7 +56,7 @@ from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
 CLOCK = '/clock'
-PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
+PAUSE = 3.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 4e-5  # [s] the same for each topic, twenty times what a look at it takes
 LONGER = 8.0  # times the pause while turns are judged compiled: the larger they are the better
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
@@ -314,6 +314,16 @@ class Intake(Waitable):
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
+        if self._compiled is None:
+            return self._drain() > 0
+        self._compiled.at_rest.clear()
+        try:
+            return self._drain() > 0
+        finally:
+            self._compiled.at_rest.set()
+
+    def _drain(self) -> int:
+        """Hand over all that waits, oldest first; return how many messages that was."""
         begin, step = time.monotonic(), 0
         if self._clock is None:  # by how much [ns] the clock of the system was set
             before = time.monotonic_ns()
@@ -325,7 +335,7 @@ class Intake(Waitable):
             self._worked(now - begin, messages)
             if self._compiled is not None:
                 self._compiled.count(events, now)
-        return messages > 0
+        return messages
 
     def _drain_at_once(self) -> tuple[int, int]:
         """Hand over all that waits as one turn; return how many messages and events that was."""
@@ -374,7 +384,7 @@ class Intake(Waitable):
         """
         if heard:
             if self.is_compiled:
-                self._hand_over_burst(Burst.of(heard))
+                self._hand_over_burst(Burst.of(heard, self.topics.values()))
             else:
                 turn = ordered([event for one in heard for event in self._judged(one)])
                 self._recorder.hear(heard)

@@ -358,7 +358,8 @@ class BallscrewMonitor(LifecycleNode):
                 end = at + 1
                 publisher.frame.take_many(judged.rows[begin:end])
                 begin = end
-                self._publish(publisher, row)
+                place = f'the state of {row.stamp} ns'
+                publisher.guarded(place, self._publish, publisher, row)
             self._note_leap(publisher)
             publisher.frame.take_many(judged.rows[begin:])
             self._healths.take_many(publisher.name, judged.rows)

@@ -12,7 +12,7 @@ import sys
 
 from ballscrew_msgs.msg import BallScrewState, InputHealth
 from geometry_msgs.msg import WrenchStamped
-from peer import axis_names, FAST, topic
+from peer import axis_names, FAST, INPUTS, topic
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -25,7 +25,7 @@ class BareAxis:
     def __init__(self, node: Node, axis: str, period: float) -> None:
         """Subscribe; `period` [s] is that of the node."""
         self._period = period
-        self._state = BallScrewState(axis=axis, inputs=[InputHealth(), InputHealth()])
+        self._state = BallScrewState(axis=axis, inputs=[InputHealth(name=name) for name in INPUTS])
         self._publisher = node.create_publisher(BallScrewState, topic('bare', axis, 'state'), 10)
         make = node.create_subscription
         make(JointState, topic('bare', axis, 'speed'), self._on_speed, 200)

@@ -25,8 +25,8 @@ class Findings:
 
 
 HEAD = (
-    f'{"":6}{"axes":>5}{"[Hz]":>6}{"period":>7}{"sent":>9}{"missing":>8}{"lost":>7}{"reached":>8}'
-    f'{"core":>8}{"per message":>12}{"p50":>9}{"p99":>9}{"load":>6}'
+    f'{"":6}{"axes":>5}{"[Hz]":>6}{"period":>7}{"sent":>9}{"missing":>8}{"topics":>7}{"lost":>7}'
+    f'{"reached":>8}{"core":>8}{"per message":>12}{"p50":>9}{"p99":>9}{"load":>6}'
 )
 
 
@@ -42,8 +42,8 @@ def line_of(turns: Sequence[Turn]) -> str:
 
     return (
         f'{one.kind:6}{one.axes:5}{one.rate:6g}{one.period:7g}{total("sent"):9}'
-        f'{total("missing"):8}{total("lost"):7}{middle("reached"):8.2f}'
-        f'{middle("cpu_percent"):6.1f} %{middle("cpu_us"):9.0f} us'
+        f'{total("missing"):8}{middle("missing_topics"):7g}{total("lost"):7}'
+        f'{middle("reached"):8.2f}{middle("cpu_percent"):6.1f} %{middle("cpu_us"):9.0f} us'
         f'{middle("p50_ms"):6.2f} ms{middle("p99_ms"):6.1f} ms{middle("load"):6.1f}'
     )
 

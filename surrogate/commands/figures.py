@@ -49,6 +49,7 @@ def _figures(args: argparse.Namespace) -> int:
     """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
     figures = tuple(args.only or FIGURES)
     wanted = tasks(figures, args.draws)
+    from surrogate.compiler import check
     from surrogate.parameters import load_screw
     from surrogate.screw.opened import Contacts
     from surrogate.studies.figures import draw_figures
@@ -56,6 +57,7 @@ def _figures(args: argparse.Namespace) -> int:
     from surrogate.studies.solve import run_study
     from surrogate.tasks.workers import open_pool
 
+    check()  # before a study takes each point for one that fails
     measured = read_measured(args.measured) if args.measured else None
     with open_pool(args.workers, args.dask) as pool:
         study = run_study(args.out, wanted, pool, Progress(len(wanted), 'solves').show)

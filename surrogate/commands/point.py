@@ -206,9 +206,11 @@ def _full(
     args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
+    from surrogate.compiler import check
     from surrogate.screw.contacts import ScrewSettings
     from surrogate.screw.full_record import full_record
 
+    check()
     settings = ScrewSettings(
         kinematics=args.kinematics or 'rolling', inlet_heating=not args.isothermal
     )

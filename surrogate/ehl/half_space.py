@@ -15,9 +15,9 @@ first and the last column are copies.
 from functools import lru_cache
 from typing import NamedTuple
 
-from numba import njit
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+from surrogate.compiler import njit
 from surrogate.ehl.kernels.fft import Fft, fft_forward, fft_inverse, good_length, make_fft
 
 Array = NDArray[np.floating]

@@ -4,9 +4,9 @@
 
 import math
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 
 Array = NDArray[np.float64]
 

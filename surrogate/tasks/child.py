@@ -168,16 +168,19 @@ class Worker:
         hear(self, {'lost': killed if code < 0 else ended})
 
 
-def result_apart(task: str, inputs: Mapping[str, Any], *, memory: int, failure: str) -> Any:
+def result_apart(
+    task: str, inputs: Mapping[str, Any], *, memory: int, failure: str, niceness: int = 0
+) -> Any:
     """
     Return the result of a task, `module:function`, that reads what may kill its process.
 
-    It runs in a child that may use `memory` [B]. Raises InputError: `failure` and how the child
-    ended, or the sentence of the task; and OSError if there can be no child.
+    It runs in a child of a `niceness` that may use `memory` [B]. Raises InputError: `failure` and
+    how the child ended, or the sentence of the task; and OSError if there can be no child.
 
     """
     heard: queue.SimpleQueue[Frame] = queue.SimpleQueue()
-    worker = Worker(lambda _, frame: heard.put(frame), memory=memory, quiet=True)
+    options: dict[str, Any] = {'niceness': niceness, 'memory': memory, 'quiet': True}
+    worker = Worker(lambda _, frame: heard.put(frame), **options)
     try:
         worker.send({'task': task, 'inputs': dict(inputs)})
         frame = heard.get()

@@ -10,9 +10,9 @@ then by band.
 
 """
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]

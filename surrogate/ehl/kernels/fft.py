@@ -11,9 +11,9 @@ inverse takes it from there, so a convolution needs no reordering. Lengths are 3
 
 from typing import NamedTuple
 
-from numba import njit
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+from surrogate.compiler import njit
 
 Array = NDArray[np.floating]
 

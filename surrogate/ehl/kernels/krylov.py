@@ -12,9 +12,9 @@ compiled functions that call themselves cannot be kept on the disk.
 
 import math
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 from surrogate.ehl.kernels.level import (
     apply_operator,
     factor,

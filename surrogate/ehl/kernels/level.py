@@ -11,9 +11,9 @@ of film pressure is that of the total pressure.
 
 from typing import NamedTuple
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 from surrogate.ehl.half_space import deform, HalfSpace, repeat
 from surrogate.ehl.kernels.bands import bands_across, factor_bands, mark_thick_film, solve_bands
 from surrogate.ehl.kernels.line import (

@@ -11,9 +11,9 @@ on contact nodes the film pressure follows from a second line system.
 
 """
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]

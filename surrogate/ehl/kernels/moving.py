@@ -11,9 +11,9 @@ nothing is smeared where the oil is too stiff to flow. Units and planes as in `r
 
 import math
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 from surrogate.ehl.kernels.reynolds import face_flow, limited_change
 
 Array = NDArray[np.float64]

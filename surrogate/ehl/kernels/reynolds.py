@@ -11,9 +11,9 @@ film over a^2/Rx, x over a; fluxes are multiplied by dx. Stencil planes: 0 centr
 
 import math
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 from surrogate.formulas.lubricant import ROELANDS_PRESSURE
 
 Array = NDArray[np.float64]

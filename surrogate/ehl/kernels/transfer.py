@@ -10,9 +10,9 @@ mirror image of column 2.
 
 from typing import TypeVar
 
-from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.compiler import njit
 from surrogate.ehl.kernels.line import mirror
 
 Array = NDArray[np.floating]

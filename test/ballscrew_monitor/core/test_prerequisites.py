@@ -18,16 +18,19 @@ PACKAGES = ('ballscrew_monitor', 'surrogate')
 LOOKUP = 'surrogate/data/surfaces/nominal_iso_vg_68.npz'
 POINT = ('point', '--speed-rpm', '600', '--load-N', '1000')
 # What needs which package: {bag} is a recording, {out} a folder, and {csv} a table.
-SOLVES = (
-    (*POINT, '--tier', 'closed_form'),
+FULL = (
     POINT,
-    ('onset',),
     ('contact', 'nominal_smooth'),
-    ('identify', '{csv}'),
     ('figures', '--out', '{out}'),
     ('validate',),
-    ('surface', 'build', '--out', '{out}/a.npz', '--tier', 'closed_form'),
     ('surface', 'build', '--out', '{out}/b.npz', '--workers', '1'),
+)
+SOLVES = (
+    *FULL,
+    (*POINT, '--tier', 'closed_form'),
+    ('onset',),
+    ('identify', '{csv}'),
+    ('surface', 'build', '--out', '{out}/a.npz', '--tier', 'closed_form'),
     ('surface', 'check', LOOKUP),
     ('surface', 'sweep', '{catalogue}', '--out', '{out}'),
 )
@@ -54,7 +57,7 @@ NEEDS = {
     'h11': PAGES,
     'matplotlib': PICTURES,
     'mcap': READS,
-    'numba': (*SOLVES, *JUDGES),
+    'numba': (*FULL, *JUDGES),
     'numpy': (POINT, ('doctor',)),
     'polars': (*REPORTS, ('import', '{csv}', '--guess'), ('identify', '{csv}')),
     'prometheus_client': PAGES,

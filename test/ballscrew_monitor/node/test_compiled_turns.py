@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Turns are judged compiled where events come fast, once the code is there; else interpreted."""
 
+import importlib
 from pathlib import Path
+import sys
+import threading
 
 from ballscrew_monitor.node import compiled_turns
 from ballscrew_monitor.node.compiled_turns import COMPILED_FROM, CompiledTurns, SPAN
@@ -72,6 +75,34 @@ def test_what_cannot_be_compiled_is_warned_of_once(bench, refusal, says):
     assert not bench.run(1.1 * COMPILED_FROM, seconds=10.0)
     assert bench.warnings == [says('not_compiled', why=str(refusal))]
     assert len(bench.done) == 1
+
+
+@pytest.mark.parametrize('breaks', [False, True])
+def test_before_each_module_that_it_loads_the_thread_waits_until_nothing_waits(
+    bench, monkeypatch, tmp_path, breaks
+):
+    """Modules that another thread imports meanwhile come at once."""
+    for name in ('turns_first', 'turns_second', 'turns_aside'):
+        (tmp_path / f'{name}.py').write_text('1 / 0' if breaks and 'second' in name else '')
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def wait(timeout):
+        bench.done.append(sorted(name for name in sys.modules if name.startswith('turns_')))
+
+    def load(inputs):
+        importlib.import_module('turns_first')
+        aside = threading.Thread(target=importlib.import_module, args=('turns_aside',))
+        aside.start()
+        aside.join(DEADLINE)
+        importlib.import_module('turns_second')
+
+    monkeypatch.setattr(bench.turns.at_rest, 'wait', wait)
+    monkeypatch.setattr(compiled_turns, 'load', load)
+    before = list(sys.meta_path)
+    assert bench.run(1.1 * COMPILED_FROM) is not breaks
+    assert bench.done[1:] == [[], ['turns_aside', 'turns_first']]
+    assert sys.meta_path == before
 
 
 def test_the_guide_states_the_rate():

@@ -200,7 +200,8 @@ class AtOnce:
     """An intake whose turns are judged compiled, and the values and losses that they hold."""
 
     def __init__(self, bench):
-        self.values, self.losses, self.counted = [], [], 0
+        self.values, self.losses, self.counted, self.rests = [], [], 0, set()
+        self.at_rest = threading.Event()
         bench.begin_anew(None, compiled=self, take_many=self._take)
 
     @property
@@ -211,6 +212,7 @@ class AtOnce:
         self.counted += events
 
     def _take(self, turn):
+        self.rests.add(self.at_rest.is_set())
         self.values += turn.events['value'].tolist()
         self.losses += turn.events['lost'].tolist()
 
@@ -224,6 +226,8 @@ def test_turns_that_are_judged_compiled_hold_all_in_the_order_of_arrival(bench):
     assert intake.values == list(range(100))
     assert set(intake.losses) == {0}
     assert intake.counted == 100
+    assert intake.rests == {False}
+    assert intake.at_rest.is_set()
     for i in range(100, 3100):
         bench.publish('speed', i)
     bench.until(lambda: intake.values[-1] == 3099.0)
@@ -253,6 +257,7 @@ def test_a_leap_of_simulated_time_ends_a_turn_that_is_judged_compiled(bench, mon
     assert turns == [[9 * SECOND, 10 * SECOND], [500 * SECOND], [20 * SECOND]]
     assert steps == [489 * SECOND, -481 * SECOND]
     assert intake.counted == 4
+    assert len(bench.intake._turns._slots.slots) == 2  # those of the load too, which is silent
 
 
 @pytest.mark.parametrize('hours', [1, -1])

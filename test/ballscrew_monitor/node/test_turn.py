@@ -3,6 +3,7 @@
 """The messages of a turn as an array: the events that they give one by one, in the same order."""
 
 import dataclasses
+import itertools
 import math
 import random
 import struct
@@ -15,6 +16,7 @@ from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.monitor import fill
 from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL, Row, SAMPLE
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.burst import Burst
 from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.intake import _events
@@ -251,6 +253,21 @@ def test_both_byte_orders_and_orders_of_names_are_read_within_one_turn():
     assert second.events['value'].tolist() == [2.0, 4.0, 6.0, 8.0, 10.0]
 
 
+def test_slots_are_made_once_whichever_topics_have_messages():
+    """In simulated time a turn has what came within one step of `/clock`."""
+    inputs, made = Inputs(), set()
+    reader = inputs.reader(Reading())
+    messages = {SHARED: joints(x=1.0, y=2.0), '/x/load': load(3.0), '/y/load': load(4.0)}
+    for names in itertools.permutations(messages):
+        for count in range(1, 4):
+            heard = [inputs.heard(name, messages[name]) for name in itertools.islice(names, count)]
+            burst = Burst.of(heard, inputs.topics.values())
+            turn = reader.turn(burst, Reading())
+            assert repr(turn.events) == repr(inputs.turn(heard, Reading()).events)
+            made.add(reader._slots)
+    assert len(made) == 1
+
+
 def test_a_reader_follows_what_changes_between_turns():
     """Publishers that come and go, a parameter, and an axis that begins to read a topic."""
 
@@ -321,10 +338,16 @@ def test_nothing_comes_of_messages_that_the_program_fails_at():
 class Spoken:
     """What a node does with the rows of an axis, with a node's own way to judge."""
 
+    guarded = AxisPublisher.guarded
+
     def __init__(self, axis):
         self.axis, self.name, self.frame = axis, axis.name, FreezeFrame()
         self.many = ManyJudge(axis.monitor, 8)
-        self.states, self.rows, self.leaps = [], [], []
+        self.states, self.rows, self.leaps, self.log = [], [], [], []
+        self.unspeakable = set()  # numbers of states that cannot be published
+        self.defect, self.failed = '', False
+        logger = types.SimpleNamespace(error=self.log.append)
+        self._node = types.SimpleNamespace(get_logger=lambda: logger)
         self.may_note_leap = lambda: True
         self._healths = types.SimpleNamespace(
             take_many=lambda _, rows: self.rows.extend(rows[[*OF_EACH_ROW]].tolist())
@@ -347,6 +370,8 @@ class Spoken:
             frame = self.frame.facts(row.stamp) if row.edge else {}
             ending = self.axis.monitor.ending
             self.states.append(repr((state, inputs, frame, ending)))
+            if len(self.states) in self.unspeakable:
+                raise ZeroDivisionError
 
 
 def machine_turn(inputs, draw, number):
@@ -403,3 +428,25 @@ def test_states_and_rows_are_the_same_judged_one_by_one_and_compiled(more):
         assert as_array(left.memory).tobytes() == as_array(right.memory).tobytes()
         assert left.memory.event_number > 1
     assert each['y'].leaps == [10.0]
+
+
+def test_a_state_that_cannot_be_published_leaves_the_rest_of_its_turn():
+    """The same is judged and said as where all states can be; the first failure is logged."""
+    ways = []
+    for unspeakable in (set(), {3, 20}):
+        inputs = Inputs(more={'x.publish_period': 0.0, 'x.load.topic': '/x/load'})
+        spoken, draw = Spoken(inputs.axes[0]), random.Random(2)
+        spoken.unspeakable = unspeakable
+        heard = [one for number in range(15, 30) for one in machine_turn(inputs, draw, number)]
+        spoken.judge_many(inputs.turn(heard, Reading()).by_axis()[0])
+        ways.append(spoken)
+    sound, broken = ways
+    assert len(sound.states) > 40
+    assert broken.states == sound.states
+    assert repr(broken.rows) == repr(sound.rows)
+    assert broken.frame.facts(NOW + SECOND) == sound.frame.facts(NOW + SECOND)
+    memories = [as_array(way.axis.monitor.memory).tobytes() for way in ways]
+    assert memories[0] == memories[1]
+    assert sound.log == []
+    assert len(broken.log) == 1
+    assert f'axis x: {broken.defect}' in broken.log[0]
