@@ -19,7 +19,7 @@ Part = Literal['point', 'lubricant', 'screw', 'roughness']
 Ends = tuple[float, float]
 FLOORS = 'film_floor_low', 'film_floor_high'
 APART = 1.05
-"""Onset of a side over that of the other from which on other raceways keep their order [-]."""
+"""Onset of one side over that of the other from which on other raceways keep the order [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,7 +37,7 @@ class ScrewCase:
         return self.screw.roughness
 
     def changed(self, part: Part, **values: float) -> 'ScrewCase':
-        """Return a case with other values [SI] in one of its parts; oil and point cost no side."""
+        """Return a case with other values [SI] in a part, of both sides for oil and point."""
         if part == 'roughness':
             return replace(self, screw=with_raceway(self.screw, **values))
         side = self.side if part == 'screw' else None
