@@ -149,12 +149,12 @@ def factor_of(column: str, kind: str) -> str:
 
 def unknown_unit(column: str, kind: str = '') -> str:
     """
-    Return what a name states that is no unit and no axis, else nothing.
+    Return what a name states that is no unit, no axis and no number of a field, else nothing.
 
     It is in the last brackets, or a factor beside the unit of a kind of quantity.
 
     """
-    texts = BRACKETS.findall(LETTERED.sub(' ', column))
+    texts = [text for text in BRACKETS.findall(LETTERED.sub(' ', column)) if not text.isdigit()]
     last = texts[-1].strip() if texts else ''
     factor = factor_of(column, kind)
     return last if factor in last else factor

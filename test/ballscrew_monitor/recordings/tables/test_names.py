@@ -40,6 +40,8 @@ import pytest
         ('X.Act.Frc [N]', 'axis', 'x', 'load', 'N'),
         ('Temps (s)', 'machine', '', 'time', 's'),
         ('Vitesse X (mm/s)', 'axis', 'x', 'speed', 'mm/s'),
+        ('velocity[0]', 'machine', '', 'speed', ''),
+        ('joint_states.effort[1]', 'machine', '', 'torque', ''),
         ('Prędkość X [mm/s]', 'axis', 'x', 'speed', 'mm/s'),
         ('POŁOŻENIE X [mm]', 'axis', 'x', 'position', 'mm'),
         ('Siła X [N]', 'axis', 'x', 'load', 'N'),
