@@ -79,7 +79,7 @@ OF_ANOTHER_THING = frozenset(
     'conveyor compressor coolant chiller workpiece part '
     'werkzeug werkstück bahn revolver reitstock greifer bremse pumpe lüfter'.split()
 )
-"""Words of a motion or load that is none of an axis whose letter is not there."""
+"""Words of a motion or load of something else, unless the letter of an axis stands beside them."""
 BEARINGS = frozenset('bearing bearings lager'.split())
 MEASURED = frozenset(
     'actual act feedback fb measured meas encoder enc real pv ist istwert '
@@ -147,9 +147,13 @@ TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
 _NAME = re.compile(r'[a-z][a-z0-9_]*')
 OF_ALL = re.compile(
-    r'(?<![^\W_])(?:(?:axis|achse)[\s_-]*)?(?P<letter>[xyz])(?![^\W_])', re.IGNORECASE
+    r'(?:(?:axis|achse|axe|asse|eje|oś)[\s_-]*)?(?P<letter>[xyz])(?:[\s_-]*(?:axis|achse))?'
+    r'(?:[\s_-]*\d+)?',
+    re.IGNORECASE,
 )
-"""The letter of an axis in a text about all of a table: a cell, or the name of sheet or file."""
+"""A text about all rows that is the name of an axis: a cell, or the name of a sheet."""
+IN_FILE = re.compile(r'(?<![^\W_])[xyz](?![^\W_])', re.IGNORECASE)
+"""The letter of an axis in the name of a file."""
 TIMES_BY_UNIT = frozenset({'ms', 'us', 'ns', 's'})  # of a column that names no quantity
 
 
@@ -265,8 +269,14 @@ def axis_names(named: Sequence[Named]) -> dict[str, str]:
 
 
 def axis_of_all(text: str) -> str:
-    """Return the axis that a text about all columns names, empty for none or several."""
-    letters = {match['letter'].lower() for match in OF_ALL.finditer(text)}
+    """Return the letter of the axis that a text about all rows is the name of, else nothing."""
+    match = OF_ALL.fullmatch(text.strip())
+    return match['letter'].lower() if match else ''
+
+
+def axis_of_file(stem: str) -> str:
+    """Return the only letter of an axis that stands alone in the name of a file, else nothing."""
+    letters = {letter.lower() for letter in IN_FILE.findall(stem)}
     return letters.pop() if len(letters) == 1 else ''
 
 

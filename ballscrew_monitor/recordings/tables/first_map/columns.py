@@ -65,7 +65,7 @@ class Columns:
         if not self.head.named:
             raise InputError(_unnamed(path, self.head))
         self._choose()
-        self._refuse_several()
+        self._look_at_sources()
         self.mark_cells: dict[str, list[str]] = {}
         self.marks = self._marks()
         self._look_through(most, shown)
@@ -165,7 +165,7 @@ class Columns:
         self.joints = set(texts) & set(joints)
         return texts
 
-    def _refuse_several(self) -> None:
+    def _look_at_sources(self) -> None:
         """
         Name the only axis by what tells it of all rows: a column, the sheet or the file.
 
@@ -177,7 +177,8 @@ class Columns:
             if len(cells) > 1:
                 raise InputError(f'log {self.path}: {of_several(column, cells)}')
         texts = [*(cell for cells in told.values() for cell in cells), self.source.sheet]
-        name = next(filter(None, map(names.axis_of_all, [*texts, self.path.stem])), '')
+        of_all = [*map(names.axis_of_all, texts), names.axis_of_file(self.path.stem)]
+        name = next(filter(None, of_all), '')
         if name and not names.axis_names(self.named) and 'x' in self.axes:
             self.axes = {name: self.axes['x']}
             self.by_axis = {name: self.by_axis['x']}

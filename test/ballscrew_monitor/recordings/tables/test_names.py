@@ -4,6 +4,8 @@
 
 from ballscrew_monitor.recordings.tables.names import (
     axis_names,
+    axis_of_all,
+    axis_of_file,
     best,
     is_of_the_screw,
     read_name,
@@ -225,3 +227,15 @@ def test_german_words_say_what_is_measured_of_what_and_in_which_unit():
 )
 def test_the_quantity_of_another_thing_is_none_of_the_axis(column):
     assert not read_name(column).kind
+
+
+@pytest.mark.parametrize(
+    ('text', 'whole', 'file'),
+    [
+        *(('X', 'x', 'x'), ('y axis', 'y', 'y'), ('Achse_Z', 'z', 'z'), ('Axis X 2', 'x', 'x')),
+        *(('datos y fuerza', '', 'y'), ('feed_z_7', '', 'z'), ('x and y', '', '')),
+        *(('16x5', '', ''), ('max', '', ''), ('', '', ''), ('Y2', 'y', '')),
+    ],
+)
+def test_the_axis_of_all_rows_is_told_by_a_name_and_in_a_file_by_a_letter(text, whole, file):
+    assert (axis_of_all(text), axis_of_file(text)) == (whole, file)
