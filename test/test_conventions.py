@@ -74,6 +74,7 @@ ROSDEP = {
 }
 # Tests of a whole folder instead of one of its files, by what they hold it against.
 THEMES = {
+    'ballscrew_monitor/recordings/tables/test_cases.py',
     'ballscrew_monitor/recordings/tables/test_written_forms.py',
     'surrogate/files/test_files.py',
     'bags/test_identity.py',

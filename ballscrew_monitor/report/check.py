@@ -78,7 +78,8 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
         surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
         _report(logs, args, nominal)
         assumed_oil = OIL if args.oil is None and sheets and sheets[1].name == OIL else ''
-        steps = next_steps(logs, runs, is_screw_known=sheets is not None, assumed_oil=assumed_oil)
+        screw = sheets[0].name if sheets else ''
+        steps = next_steps(logs, runs, screw=screw, of_screw=[*surfaces], assumed_oil=assumed_oil)
         parts = check_parts(logs, asides, runs, surfaces, steps)
         results, title = [log.result for log in logs], f'Check of {args.folder.resolve().name}'
         replace_file(args.out / INDEX, overview_page(results, title=title, parts=parts).encode())

@@ -115,9 +115,19 @@ def notes_of(logs: Sequence[CheckedLog]) -> list[str]:
 
 
 def next_steps(
-    logs: Sequence[CheckedLog], runs: Sequence[FreeRun], *, is_screw_known: bool, assumed_oil: str
+    logs: Sequence[CheckedLog],
+    runs: Sequence[FreeRun],
+    *,
+    screw: str,
+    of_screw: Sequence[str],
+    assumed_oil: str,
 ) -> list[str]:
-    """Return what to do and what to record, each once, what hinders a verdict first."""
+    """
+    Return what to do and what to record, each once, what hinders a verdict first.
+
+    `screw` is the name of the sheet, empty without one, by which axes `of_screw` were judged.
+
+    """
     guesses = {log.path.name: log.guess.unstated for log in logs if log.guess}
     steps = [f'{name}: {why}' for name, whys in guesses.items() for why in whys]
     steps += [
@@ -134,7 +144,14 @@ def next_steps(
     lines = [line for log in logs if not log.is_free_run for line in log.result.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]
     steps += [hint for log in logs for hint in log.result.hints]
-    if not is_screw_known:
+    if len(of_screw) > 1:
+        steps.append(
+            f'The sheet {screw} is that of one screw, and axes {listed(of_screw)} were judged '
+            'by it: the verdict is that of the axis with this screw alone. Lay the logs of each '
+            'other axis into a folder of their own with its sheet, or state screw, lead_mm and '
+            'surface of that axis in a map beside its log'
+        )
+    if not screw:
         steps.append(
             'State the screw and the oil of the machine, --screw and --oil, or lay their sheets '
             'into the folder: the shipped ones were assumed'

@@ -164,11 +164,6 @@ class AxisCase:
         return begin - margin, end + margin
 
     @property
-    def missed_share(self) -> float:
-        """Return the share of the motion in gaps of a table [-]; of a bag a clock may leap."""
-        return self.survey.missed_share if self.facts.motion_unit else 0.0
-
-    @property
     def begins(self) -> float:
         """Return the date of its first row [s] since 1970, NaN where the log has no calendar."""
         begins = self.survey.first / SECOND
@@ -222,7 +217,7 @@ class LogCase:
     @property
     def missed_share(self) -> float:
         """Return the largest share of the motion of an axis between samples [-]."""
-        return max((case.missed_share for case in self.axes), default=0.0)
+        return max((case.survey.missed_share for case in self.axes), default=0.0)
 
     @property
     def judged(self) -> bool:

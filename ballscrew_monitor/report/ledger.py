@@ -89,7 +89,7 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
     if source is Source.SPEED:
         samples = case.survey.samples
         judged = sum(samples.get(reason, 0) for reason in NO_VERDICTS)
-        missed = case.missed_share
+        missed = case.survey.missed_share
         losses |= {
             reason.text: count for reason, count in samples.items() if reason not in NO_VERDICTS
         }

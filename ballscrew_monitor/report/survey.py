@@ -331,7 +331,7 @@ class Surveyor:
         self._sums = as_array(RowSums())
         self._gaps: list[tuple[int, int]] = []
         self._gap_count = self._gap_time = self._missed = 0
-        self._last_sample, self._last_moved = np.empty(0, np.int64), np.empty(0, np.bool_)
+        self._last_sample, self._last_moved = np.empty((2, 0), np.int64), np.empty(0, np.bool_)
         self._run, self._runs = 0, 1
 
     def add(self, rows: NDArray[Any], run: int = 0) -> None:
@@ -339,22 +339,25 @@ class Surveyor:
         if run != self._run:
             self._run, self._runs = run, self._runs + 1
             self._sums['parted'] = True
-            self._last_sample, self._last_moved = self._last_sample[:0], self._last_moved[:0]
+            self._last_sample, self._last_moved = self._last_sample[:, :0], self._last_moved[:0]
         sure = surely_outside(rows, self._surface, self._limits)
         lead, standstill = self._surface.lead, self._limits.standstill_speed
         compiled_sums()(self._sums, rows, sure, lead, standstill, self._max_gap)
         of_speed = rows[~rows['tick']]
-        samples = np.concatenate([self._last_sample, of_speed['stamp']])
+        times = np.array([of_speed['stamp'], of_speed['now']])
+        samples = np.concatenate([self._last_sample, times], axis=1)
         moved = np.abs(of_speed['speed']) >= standstill
         moved = np.concatenate([self._last_moved, moved])
-        self._last_sample, self._last_moved = samples[-1:].copy(), moved[-1:].copy()
+        self._last_sample, self._last_moved = samples[:, -1:].copy(), moved[-1:].copy()
         steps = np.diff(samples)
-        for at in np.flatnonzero(steps > self._max_gap).tolist():
+        for at in np.flatnonzero(steps[0] > self._max_gap).tolist():
+            step, lasting = int(steps[0, at]), int(steps[:, at].min())
             self._gap_count += 1
-            self._gap_time += int(steps[at])
-            self._missed += int(steps[at]) if moved[at] and moved[at + 1] else 0
+            self._gap_time += step
+            if lasting > self._max_gap and moved[at] and moved[at + 1]:  # else one clock leaps
+                self._missed += lasting
             keep = heapq.heappush if len(self._gaps) < MOST_GAPS else heapq.heappushpop
-            keep(self._gaps, (int(steps[at]), int(samples[at])))
+            keep(self._gaps, (step, int(samples[0, at])))
 
     @property
     def sums(self) -> RowSums:

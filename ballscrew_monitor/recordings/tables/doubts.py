@@ -21,7 +21,9 @@ from ballscrew_monitor.recordings.tables.amounts import (
 )
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import Turns
+from ballscrew_monitor.recordings.tables.interleaved import cells_of_sources, of_several
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
+from ballscrew_monitor.recordings.tables.names import axis_of_all
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.times import line, SHOWING, Times
@@ -155,7 +157,17 @@ def _sampled(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[st
 
 
 def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
-    """Yield what is unclear of the scales of columns, and wrong with positions."""
+    """Yield what is unclear of the rows and scales of columns, and wrong with positions."""
+    marks = [mark.column for each in mapping.marks.values() for mark in each.held]
+    told = cells_of_sources(table.source, {*mapping.columns, *marks})
+    for name, cells in told.items():
+        if len(cells) > 1:
+            yield of_several(name, cells)
+        else:
+            what = f'column {short(repr(name))} says that its rows are'
+            yield from _of_another_axis(mapping, what, ''.join(cells))
+    what = f'sheet {short(repr(table.source.sheet))} is'
+    yield from _of_another_axis(mapping, what, table.source.sheet)
     factors = table.source.head.factors
     columns = [column for axis in mapping.axes for column in axis.columns.values()]
     if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
@@ -172,6 +184,13 @@ def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
                     f'allowed is up to {FARTHEST:g} {unit} in both directions: name another '
                     f'column for axes.{axis.name}.position in the map, or none'
                 )
+
+
+def _of_another_axis(mapping: TableMap, what: str, text: str) -> Iterator[str]:
+    """Yield what is wrong if a text about all rows names another axis than the only one."""
+    told, stated = axis_of_all(text), axis_of_all(mapping.axes[0].name)
+    if len(mapping.axes) == 1 and told and stated not in ('', told):
+        yield f'{what} of axis {told}, the map states axis {stated}: name axis {told} in the map'
 
 
 def doubts_of_motion(

@@ -32,7 +32,7 @@ from ballscrew_monitor.recordings.tables.first_map.signs import assume_direction
 from ballscrew_monitor.recordings.tables.first_map.time_column import TimeColumn
 from ballscrew_monitor.recordings.tables.first_map.units import leave_out_unitless, set_unit
 from ballscrew_monitor.recordings.tables.first_map.validity import ask_for_gaps, set_marks
-from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.names import is_commanded, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
@@ -138,6 +138,11 @@ def _fill(draft: Draft, times: OwnTimes, name: str) -> None:
         if (one := chosen.get(kind))
         and (kind in MOTION or not estimates.is_silent(log.extremes[one.column]))
     }
+    draft.notes += [
+        f'axis {name}: {short(chosen[kind].column)} is a command, no measured {kind} is there'
+        for kind in used
+        if is_commanded(chosen[kind])
+    ]
     leave_out_unitless(draft, name)
     compare_motion(draft, times, name)
     for kind in used:

@@ -17,6 +17,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
     unit_and_scale,
     unit_of,
     unknown_unit,
+    with_brackets,
     words_of,
     words_without_unit,
 )
@@ -30,17 +31,22 @@ SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
     'speed': frozenset(
         'velocity velo vel speed rpm omega feed frt '
-        'geschwindigkeit geschw vorschub drehzahl vitesse velocità velocidad'.split()
+        'geschwindigkeit geschw vorschub drehzahl '
+        'vitesse velocità velocidad prędkość posuw'.split()
     ),
-    'position': frozenset('position pos posf lage weg stellung posizione posición'.split()),
-    'load': frozenset('force frc load thrust kraft forza fuerza'.split()),
+    'position': frozenset(
+        'position pos posf lage weg stellung posizione posición pozycja położenie'.split()
+    ),
+    'load': frozenset('force frc load thrust kraft forza fuerza siła'.split()),
     'torque': frozenset('torque trq tcmd effort moment drehmoment couple coppia'.split()),
-    'current': frozenset('current curr cur amps amp iq strom courant corrente corriente'.split()),
+    'current': frozenset(
+        'current curr cur amps amp iq strom courant corrente corriente prąd'.split()
+    ),
     'temperature': frozenset('temperature temp temperatur température temperatura'.split()),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
         'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd '
-        'temps horodatage tempo tiempo'.split()
+        'temps horodatage tempo tiempo czas'.split()
     ),
 }
 # Words that make a column something else, whatever else its name says.
@@ -50,6 +56,7 @@ OTHERS = frozenset(
     'simulated estimated clamping '
     'lag delta increment correction compensation offset remaining go loss noise tolerance '
     'deadband resultant ripple residual window '
+    'jog homing home standstill rapid eilgang ratio preload gravity disturbance '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer '
     'accélération erreur écart tension puissance accelerazione errore scarto potenza '
@@ -64,9 +71,15 @@ OF_ANOTHER_PART = ELSEWHERE | frozenset(
     'heatsink battery brake bremse clutch chuck chiller cooler cooling heater kühl kühlung '
     'compressor pump pumpe tank reservoir water wasser encoder housing gehäuse bed frame bett '
     'workpiece werkstück tool werkzeug table tisch inlet outlet supply return hall halle outside '
-    'outdoor environment exhaust fan alarm warning trip'.split()
+    'outdoor environment exhaust fan alarm warning trip rise dew'.split()
 )
 """Words of a temperature that is not that of the screw or its oil, whatever else they name."""
+OF_ANOTHER_THING = frozenset(
+    'tool cutting surface path wheel handwheel turret chuck tailstock grip gripper brake pump fan '
+    'conveyor compressor coolant chiller workpiece part '
+    'werkzeug werkstück bahn revolver reitstock greifer bremse pumpe lüfter'.split()
+)
+"""Words of a motion or load of something else, unless the letter of an axis stands beside them."""
 BEARINGS = frozenset('bearing bearings lager'.split())
 MEASURED = frozenset(
     'actual act feedback fb measured meas encoder enc real pv ist istwert '
@@ -74,7 +87,7 @@ MEASURED = frozenset(
 )
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
-    'soll sollwert programmed prog planned interpolator '
+    'soll sollwert nenn nom programmed prog planned interpolator '
     'consigne commande commandée référence comando riferimento consigna referencia'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
@@ -133,6 +146,14 @@ TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 """Words of a speed that tell its unit, where nothing else does."""
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
 _NAME = re.compile(r'[a-z][a-z0-9_]*')
+OF_ALL = re.compile(
+    r'(?:(?:axis|achse|axe|asse|eje|oś)[\s_-]*)?(?P<letter>[xyz])(?:[\s_-]*(?:axis|achse))?'
+    r'(?:[\s_-]*\d+)?',
+    re.IGNORECASE,
+)
+"""A text about all rows that is the name of an axis: a cell, or the name of a sheet."""
+IN_FILE = re.compile(r'(?<![^\W_])[xyz](?![^\W_])', re.IGNORECASE)
+"""The letter of an axis in the name of a file."""
 TIMES_BY_UNIT = frozenset({'ms', 'us', 'ns', 's'})  # of a column that names no quantity
 
 
@@ -159,8 +180,7 @@ class Named:
 
 def read_name(column: str, text: str = '') -> Named:
     """Return what the name of a column says, or a longer text about it."""
-    held, column = column, OF_CONTROL.sub('', column)
-
+    held, column = column, with_brackets(OF_CONTROL.sub('', column))
     told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, OF_DRIVES.sub(_of_drive, text or column)))
     words = words_of(told)
     place, axis = _place(words)
@@ -248,6 +268,18 @@ def axis_names(named: Sequence[Named]) -> dict[str, str]:
     }
 
 
+def axis_of_all(text: str) -> str:
+    """Return the letter of the axis that a text about all rows is the name of, else nothing."""
+    match = OF_ALL.fullmatch(text.strip())
+    return match['letter'].lower() if match else ''
+
+
+def axis_of_file(stem: str) -> str:
+    """Return the only letter of an axis that stands alone in the name of a file, else nothing."""
+    letters = {letter.lower() for letter in IN_FILE.findall(stem)}
+    return letters.pop() if len(letters) == 1 else ''
+
+
 def _place(words: Sequence[str]) -> tuple[str, str]:
     lettered = bool(LINEAR & set(words))
     for number, (word, after) in enumerate(zip(words, [*words[1:], ''])):
@@ -262,7 +294,7 @@ def _place(words: Sequence[str]) -> tuple[str, str]:
             number == 0 and word in SPINDLES and not lettered
         ):
             return 'spindle', ''
-        if number == 0 and len(word) == 1 and digits:
+        if number == 0 and len(word) == 1 and digits and not lettered:
             return 'rotary' if word in ROTARY else 'machine' if word == 't' else 'other', ''
     return 'machine', ''
 
@@ -275,6 +307,9 @@ def _kind(words: Sequence[str]) -> str:
     of_screw = OF_THE_SCREW & set(words)
     of_another = (OF_ANOTHER_PART | WANTED | (set() if of_screw else BEARINGS)) & set(words)
     if not found or (found[-1] == 'temperature' and of_another):
+        return ''
+    of_thing = OF_ANOTHER_THING & set(words) and not (LINEAR | AXIS) & set(words)
+    if of_thing and found[-1] not in ('temperature', 'time'):
         return ''
     is_quality = words[-1] == 'q' and found[-1] in WITH_SIGN
     return '' if is_quality else found[-1]
@@ -373,6 +408,12 @@ def best(found: Sequence[Named]) -> dict[str, Named]:
         if one.kind in INPUTS:
             chosen.setdefault(one.kind, one)
     return chosen
+
+
+def is_commanded(one: Named) -> bool:
+    """Return True for a column whose name says that it is wanted, and not that it is measured."""
+    words = set(words_of(one.column))
+    return bool(WANTED & words) and not MEASURED & words
 
 
 def rivals(found: Sequence[Named], one: Named) -> list[Named]:

@@ -7,7 +7,8 @@ import re
 
 from ballscrew_monitor.recordings.tables.quantities import NAMED_BY_MAPS, UNITS
 
-WORD = re.compile(r'[A-ZÄÖÜÉ]+(?![a-zäöüßàéèóíµμ°])|[A-ZÄÖÜÉ]?[a-zäöüßàéèóíµμ°]+|\d+')
+_CAPITAL, _SMALL = 'A-ZÄÖÜÉÓĄĆĘŁŃŚŹŻ', 'a-zäöüßàéèóíąćęłńśźżµμ°'
+WORD = re.compile(rf'[{_CAPITAL}]+(?![{_SMALL}])|[{_CAPITAL}]?[{_SMALL}]+|\d+')
 """A word of a name: of one case, or of small letters after a capital; or a number."""
 COMPOUND = re.compile(
     '(ist|soll|motor|achs|axial|vorschub|öl|oel|mutter)?'
@@ -18,6 +19,8 @@ COMPOUND = re.compile(
 BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
 LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
 """The letter of an axis in brackets, as of FANUC."""
+OF_QUOTIENT = re.compile(r'(?P<name>.*?[^\W_])(?P<sign>\s*/\s*|\s+in\s+)(?P<unit>[^\s\[\]()]+)')
+"""A name over its unit, such as F/N, or before it, such as F in N."""
 _PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
 _CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
 _LONGEST = 4  # words of a unit, such as m per min in camel case
@@ -102,6 +105,19 @@ _MULTIPLE = re.compile(
 """A number before a unit that counts the unit, which that of an axis or a signal does not."""
 
 
+def with_brackets(column: str) -> str:
+    """Return a name whose unit is %, stands below a bar or behind `in`, with it in brackets."""
+    column = re.sub(r'(?<=[^\W_])\s*%$', ' [%]', column.strip())
+    match = OF_QUOTIENT.fullmatch(column)
+    if match is None or not is_unit(match['unit']):
+        return column
+    by_bar = any(unit_of(match['unit'], kind) for kind in ('load', 'torque', 'current'))
+    before = re.split(r'[\W_]', match['name'])[-1]
+    if '/' in match['sign'] and (is_unit(before) or not by_bar):
+        return column  # such as mm/s, or Nm/A
+    return f'{match["name"]} [{match["unit"]}]'
+
+
 def converted_unit(column: str, kind: str) -> tuple[str, float]:
     """
     Return the unit of a map and the scale to it [-] of a unit that it does not know.
@@ -133,12 +149,12 @@ def factor_of(column: str, kind: str) -> str:
 
 def unknown_unit(column: str, kind: str = '') -> str:
     """
-    Return what a name states that is no unit and no axis, else nothing.
+    Return what a name states that is no unit, no axis and no number of a field, else nothing.
 
     It is in the last brackets, or a factor beside the unit of a kind of quantity.
 
     """
-    texts = BRACKETS.findall(LETTERED.sub(' ', column))
+    texts = [text for text in BRACKETS.findall(LETTERED.sub(' ', column)) if not text.isdigit()]
     last = texts[-1].strip() if texts else ''
     factor = factor_of(column, kind)
     return last if factor in last else factor

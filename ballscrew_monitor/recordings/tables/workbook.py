@@ -27,6 +27,7 @@ import zlib
 from ballscrew_monitor.recordings.tables.apart import frame_apart
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import find_head, holds_numbers, Line
+from ballscrew_monitor.recordings.tables.names import axis_of_all
 from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 from surrogate.files import InputError, limits
@@ -91,7 +92,8 @@ def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
         if only or (cells.width > 1 and holds_numbers(lines_of(cells), fewest)):
             cells.write_ipc(inputs['target'])
             del others[name]
-            more = sum(_rows_alike(cells, path, other) for other in others)
+            of_axis = [other for other in others if axis_of_all(other) == axis_of_all(name)]
+            more = sum(_rows_alike(cells, path, other) for other in of_axis)
             return {'name': name, 'others': others, 'more_rows': more}
         others[name] = f'it has fewer than {fewest} rows of numbers'
     raise InputError(f'log {path}: no sheet has rows of numbers, {_held(names)}')

@@ -157,6 +157,21 @@ def test_a_long_table_of_unknown_names_is_a_bad_recording(tmp_path, capsys, says
     assert says('lay_map') in json.loads(capsys.readouterr().out)['what_to_do']
 
 
+def test_one_sheet_for_logs_of_several_axes_is_that_of_one(tmp_path, capsys, says):
+    folder = tmp_path / 'logs'
+    text = write(folder / 'first.csv', SPEEDS[:1]).read_text()
+    (folder / 'second.csv').write_text(text.replace('x_', 'y_'))
+    assert check(folder, tmp_path, *SHEETS, '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    assert says('several_axes') in record['what_to_do']
+    assert [*record['surfaces']] == ['x', 'y']
+    shutil.copy(tmp_path / 'out' / 'maps' / 'second.yaml', folder / 'second.map.yaml')
+    assert check(folder, tmp_path, *SHEETS, '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    assert [*record['surfaces']] == ['x']
+    assert not [step for step in record['what_to_do'] if step.startswith('The sheet')]
+
+
 def test_without_a_sheet_the_page_asks_for_one(tmp_path, capsys, says):
     write(tmp_path / 'logs' / 'cut.csv', SPEEDS)
     assert check(tmp_path / 'logs', tmp_path, '--json') == 0

@@ -132,6 +132,14 @@ def test_each_difference_of_a_bag_has_its_number_and_reason(tmp_path):
     assert log.unread == {'/note': 7}
 
 
+def test_a_hole_of_a_bag_within_a_motion_is_not_judged(tmp_path):
+    log = judge(write(tmp_path / 'bag', motion([*range(100), *range(200, 300)])))
+    ledger = ledger_of(log.axes[0], Source.SPEED)
+    assert (ledger.expected, ledger.judged) == (200, 200)
+    assert unjudged_share(log) == pytest.approx(1.01 / 2.99)
+    assert ledger.words == '34 % of the motion in gaps between samples in motion'
+
+
 def test_positions_that_make_no_speed_have_a_reason_of_their_own(tmp_path):
     timed = []
     for number in range(200):

@@ -81,6 +81,13 @@ def test_the_motion_in_a_gap_between_moving_samples_is_missed(judged):
     assert survey_of(moving, still, judged.rows(222, 1, speed=0.0)).missed_share == 0.0
 
 
+@pytest.mark.parametrize('clock', ['stamp', 'now'])
+def test_no_motion_is_missed_where_one_clock_leaps(judged, clock):
+    later = judged.rows(10, 10, speed=10.0)
+    later.rows[clock] += 5 * SECOND
+    assert survey_of(judged.rows(0, 10, speed=10.0), later).missed == 0.0
+
+
 def test_pauses_between_runs_are_no_time_and_no_gap(judged):
     surveyor = Surveyor('x', SURFACE, LIMITS, max_gap=GAP)
     for run, begin in enumerate([0, 110, 420]):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of a log that may be inputs of axes or times: their names, marks and numbers."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 import math
 from pathlib import Path
 import re
@@ -14,16 +14,13 @@ from ballscrew_monitor.recordings.tables.amounts import fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.doubts import of_slope
 from ballscrew_monitor.recordings.tables.heads import Head, NO_NAME
-from ballscrew_monitor.recordings.tables.interleaved import column_of_sources
-from ballscrew_monitor.recordings.tables.marked import look_at_marks
-from ballscrew_monitor.recordings.tables.marks import (
-    backward_cells,
-    Mark,
-    Marks,
-    MOST,
-    tells_apart,
-    valid_cells,
+from ballscrew_monitor.recordings.tables.interleaved import (
+    cells_of_sources,
+    column_of_sources,
+    of_several,
 )
+from ballscrew_monitor.recordings.tables.marked import look_at_marks
+from ballscrew_monitor.recordings.tables.marks import backward_cells, Mark, Marks, valid_cells
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import look_through
@@ -68,7 +65,7 @@ class Columns:
         if not self.head.named:
             raise InputError(_unnamed(path, self.head))
         self._choose()
-        self._refuse_several()
+        self._look_at_sources()
         self.mark_cells: dict[str, list[str]] = {}
         self.marks = self._marks()
         self._look_through(most, shown)
@@ -125,7 +122,7 @@ class Columns:
         if others := [name for name in self.source.names() if name not in used]:
             column, cells = column_of_sources(self.source.blocks(others), others, times)
             if column:
-                raise self._several(column, cells)
+                raise InputError(f'log {self.path}: {of_several(column, cells)}')
 
     def _choose(self) -> None:
         """Choose the columns of the time and of each axis by their names."""
@@ -168,23 +165,23 @@ class Columns:
         self.joints = set(texts) & set(joints)
         return texts
 
-    def _refuse_several(self) -> None:
-        """Raise InputError for rows of several axes or machines that a column tells apart."""
-        used = {one.column for one in self.inputs}
-        held = [name for name in self.source.names() if name not in used]
-        columns = [name for name in held if tells_apart(words_of(names.base_of(name)))]
-        if not columns:
-            return
-        for column, cells in look_at_marks(self.source.blocks(columns), columns)[1].items():
-            if 1 < len(cells) <= MOST:
-                raise self._several(column, cells)
+    def _look_at_sources(self) -> None:
+        """
+        Name the only axis by what tells it of all rows: a column, the sheet or the file.
 
-    def _several(self, column: str, cells: Sequence[str]) -> InputError:
-        """Return the error for rows of several axes or machines."""
-        return InputError(
-            f'log {self.path}: its rows are of several axes or machines, which column '
-            f'{short(repr(column))} tells apart: {listed(cells)}; save a log for each'
-        )
+        Raises InputError for rows of several axes or machines that a column tells apart.
+
+        """
+        told = cells_of_sources(self.source, {one.column for one in self.inputs})
+        for column, cells in told.items():
+            if len(cells) > 1:
+                raise InputError(f'log {self.path}: {of_several(column, cells)}')
+        texts = [*(cell for cells in told.values() for cell in cells), self.source.sheet]
+        of_all = [*map(names.axis_of_all, texts), names.axis_of_file(self.path.stem)]
+        name = next(filter(None, of_all), '')
+        if name and not names.axis_names(self.named) and 'x' in self.axes:
+            self.axes = {name: self.axes['x']}
+            self.by_axis = {name: self.by_axis['x']}
 
     def _marks(self) -> dict[str, dict[str, dict[str, Any]]]:
         """Return what a map says of the marks of each input: their columns, and cells if clear."""

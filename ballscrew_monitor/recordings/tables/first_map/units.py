@@ -114,6 +114,11 @@ def _of_load(draft: Draft, name: str, column: str) -> str:
             f'; or if its A means ampere, write `load: {{from: current}}` and `current: '
             f'{{column: {column}, unit: A}}` there'
         )
+    elif 'load' in words_of(column):
+        instead = (
+            '; or if it is that of the motor in per cent, write `load: {from: torque}` and '
+            f"`torque: {{column: {column}, unit: '%'}}` there"
+        )
     most = _largest(log.extremes[column])
     return f'{column} states none that is known, and forces of up to {most} may be in any{instead}'
 

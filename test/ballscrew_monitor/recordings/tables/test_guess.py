@@ -520,6 +520,15 @@ def test_a_command_gives_way_to_a_position_that_does_not_follow_it(guessed, says
     assert made.unstated == (says('another_motion'),)
 
 
+def test_a_quantity_that_is_only_commanded_is_said_and_so_is_what_a_load_may_be_in(guessed, says):
+    columns = {'t_s': TIME, 'x_command_velocity_mm_s': SPEED}
+    assert says('commanded') in guessed(columns).notes
+    columns |= {'x_actual_velocity_mm_s': SPEED, 'x load': np.round(20.0 + SPEED / 10.0)}
+    made = guessed(columns)
+    assert says('commanded') not in made.notes
+    assert says('load_of_the_motor') in made.unstated
+
+
 @pytest.mark.parametrize(('lead', 'asked'), [(10.02, False), (5.0, True), (3.3333, True)])
 def test_a_log_of_screw_and_table_tells_the_lead(lead, asked, guessed, refused, says):
     """Behind a gear the speed is that of the motor, and the lead another."""

@@ -11,6 +11,7 @@ a form of time, in groups of columns, below a preamble.
 import datetime as dt
 import math
 import random
+import re
 
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -136,6 +137,7 @@ def layout(draw):
         'marks': draw.choice(['', '', *MARKS]),
         'second time': draw.choice(['as the first', 'as the first', 'unnamed']),
         'factors': draw.random() < 0.1,
+        'unit in words': draw.random() < 0.2,
     }
 
 
@@ -226,6 +228,8 @@ def written(made):
     if made['units below']:
         split = [each.partition(' [') for each in names]
         heads = [[each for each, *_ in split], [unit.strip(']') for *_, unit in split]]
+    elif made['unit in words']:
+        heads = [[re.sub(r' \[(.*)\]$', r' in \1', each) for each in names]]
     if made['factors'] and not in_lines:
         rows.insert(0, ['1', number(0.5, 1, made['sign'], ''), *['1'] * (len(names) - 2)])
         position = columns[0]

@@ -4,6 +4,8 @@
 
 from ballscrew_monitor.recordings.tables.names import (
     axis_names,
+    axis_of_all,
+    axis_of_file,
     best,
     is_of_the_screw,
     read_name,
@@ -40,6 +42,23 @@ import pytest
         ('X.Act.Frc [N]', 'axis', 'x', 'load', 'N'),
         ('Temps (s)', 'machine', '', 'time', 's'),
         ('Vitesse X (mm/s)', 'axis', 'x', 'speed', 'mm/s'),
+        ('velocity[0]', 'machine', '', 'speed', ''),
+        ('joint_states.effort[1]', 'machine', '', 'torque', ''),
+        ('Prędkość X [mm/s]', 'axis', 'x', 'speed', 'mm/s'),
+        ('POŁOŻENIE X [mm]', 'axis', 'x', 'position', 'mm'),
+        ('Siła X [N]', 'axis', 'x', 'load', 'N'),
+        ('Prąd X [A]', 'axis', 'x', 'current', 'A'),
+        ('Czas [s]', 'machine', '', 'time', 's'),
+        ('Vx in mm/s', 'axis', 'x', 'speed', 'mm/s'),
+        ('F_x in kN', 'axis', 'x', 'load', 'kN'),
+        ('F_x/N', 'axis', 'x', 'load', 'N'),
+        ('M_x / Nm', 'axis', 'x', 'torque', 'N m'),
+        ('X velocity mm/min', 'axis', 'x', 'speed', 'mm/min'),
+        ('x constant Nm/A', 'axis', 'x', '', ''),
+        ('řeka/N', 'machine', '', '', ''),
+        ('I nenn X [A]', 'axis', 'x', 'current', 'A'),
+        ('M1_X_Velocity_mm_min', 'axis', 'x', 'speed', 'mm/min'),
+        ('S2.Z.Torque [Nm]', 'axis', 'z', 'torque', 'N m'),
         ('Effort X (N)', 'axis', 'x', 'load', 'N'),
         ('Couple X (Nm)', 'axis', 'x', 'torque', 'N m'),
         ('Accélération X (m/s2)', 'axis', 'x', '', ''),
@@ -55,6 +74,9 @@ import pytest
         ('y_load_pct', 'axis', 'y', 'torque', '%'),
         ('spindle load [%]', 'spindle', '', 'torque', '%'),
         ('x load limit [%]', 'axis', 'x', '', ''),
+        ('Load X %', 'axis', 'x', 'torque', '%'),
+        ('x torque%', 'axis', 'x', 'torque', '%'),
+        ('x load limit %', 'axis', 'x', '', ''),
         ('X1_ActualAcceleration', 'axis', 'x1', '', ''),
         ('M1_CURRENT_FEEDRATE', 'other', '', '', ''),
         ('x_feed_m_min', 'axis', 'x', 'speed', 'm/min'),
@@ -184,3 +206,36 @@ def test_german_words_say_what_is_measured_of_what_and_in_which_unit():
     assert not is_of_the_screw('Temperatur')
     names = ('Motordrehzahl', 'omega_x', 'Geschw.')
     assert [turning_unit(name) for name in names] == ['rev/min', 'rad/s', '']
+
+
+@pytest.mark.parametrize(
+    'column',
+    [
+        *(
+            'Tool speed [rpm]',
+            'Coolant pump speed [rpm]',
+            'Fan speed [rpm]',
+            'Turret position [mm]',
+        ),
+        *('Cutting speed [m/min]', 'Path velocity [mm/s]', 'Conveyor speed [mm/s]'),
+        *('X jog speed [mm/s]', 'X homing velocity [mm/s]', 'X Eilgang Geschwindigkeit [mm/s]'),
+        *('X home position [mm]', 'X speed ratio [mm/s]', 'X standstill speed [mm/s]'),
+        *('X preload force [N]', 'X gravity force [N]', 'Grip force [N]', 'Tailstock force [N]'),
+        *('Brake torque [Nm]', 'Tool torque [Nm]', 'Werkzeug Drehmoment [Nm]'),
+        *('X screw temperature rise [K]', 'Dew point temperature [degC]'),
+    ],
+)
+def test_the_quantity_of_another_thing_is_none_of_the_axis(column):
+    assert not read_name(column).kind
+
+
+@pytest.mark.parametrize(
+    ('text', 'whole', 'file'),
+    [
+        *(('X', 'x', 'x'), ('y axis', 'y', 'y'), ('Achse_Z', 'z', 'z'), ('Axis X 2', 'x', 'x')),
+        *(('datos y fuerza', '', 'y'), ('feed_z_7', '', 'z'), ('x and y', '', '')),
+        *(('16x5', '', ''), ('max', '', ''), ('', '', ''), ('Y2', 'y', '')),
+    ],
+)
+def test_the_axis_of_all_rows_is_told_by_a_name_and_in_a_file_by_a_letter(text, whole, file):
+    assert (axis_of_all(text), axis_of_file(text)) == (whole, file)

@@ -285,6 +285,14 @@ def test_a_sheet_of_the_same_names_counts_as_rows_that_there_should_be(tmp_path,
     assert (series.count, series.rows) == (100, (100 + more,))
 
 
+@pytest.mark.parametrize(('first', 'second', 'more'), [('X', 'Y', 0), ('X axis', 'X 2', 60)])
+def test_the_sheet_of_another_axis_holds_no_rows_of_this_one(tmp_path, first, second, more):
+    names = ['t [s]', 'velocity [mm/s]']
+    sheets = [(first, names, 100), (second, names, 60)]
+    assert read_sheet(book_of(tmp_path / 'log.xlsx', sheets)).more_rows == more
+    assert [*guess(tmp_path / 'log.xlsx').content['axes']] == ['x']
+
+
 def test_hidden_rows_of_a_workbook_are_read_and_counted_in_a_sentence(tmp_path):
     names = ['t [s]', 'x velocity [mm/s]']
     path = book_of(tmp_path / 'log.xlsx', [('Data', names, 100)], hidden=range(20, 50))
