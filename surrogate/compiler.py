@@ -21,11 +21,10 @@ def _njit_without_numba(**options: Any) -> Callable[[Any], Callable[..., NoRetur
     return lambda kernel: _refuse
 
 
-njit: Any
 try:
     from numba import njit
 except ModuleNotFoundError:
-    njit = _njit_without_numba
+    njit = _njit_without_numba  # type: ignore[assignment]
 
 
 def check() -> None:
