@@ -11,7 +11,6 @@ memory only where it is used.
 """
 
 from collections.abc import Callable, Mapping
-import contextlib
 import sys
 import threading
 from typing import Any
@@ -78,7 +77,12 @@ class CompiledTurns:
             self._warn(NOT_COMPILED.format(COMPILED_FROM, self._problem))
 
     def find_spec(self, name: str, *place: object) -> None:
-        """Find no module; the thread that loads waits, before each one, until nothing waits."""
+        """
+        Find no module; the thread that loads waits, before each one, until nothing waits.
+
+        Who imports something for the first time meanwhile waits for the end of that.
+
+        """
         if threading.current_thread() is self._thread:
             self.at_rest.wait(LONGEST_WAIT)
 
@@ -87,11 +91,11 @@ class CompiledTurns:
         try:
             failure = 'the judgement is not compiled'
             result_apart(f'{__name__}:load', {}, memory=0, failure=failure, niceness=NICENESS)
-            sys.meta_path.insert(0, self)
+            sys.meta_path = [self, *sys.meta_path]
             load({})
             self._loaded = True
         except Exception as error:  # whatever a compiler raises: the node goes on interpreted
             self._problem = str(error) or type(error).__name__
         finally:
-            with contextlib.suppress(ValueError):
-                sys.meta_path.remove(self)
+            # Other threads may walk the list at this time, so it is replaced and not changed.
+            sys.meta_path = [finder for finder in sys.meta_path if finder is not self]

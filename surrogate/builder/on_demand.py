@@ -15,6 +15,7 @@ import resource
 import time
 from typing import Any
 
+from surrogate.compiler import check
 from surrogate.ehl.watch import Iteration, watched
 from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint, screw_and_oil
@@ -88,7 +89,8 @@ def solve(request: Mapping[str, Any]) -> dict[str, Any]:
     """
     Solve the point of a request in a worker, which tells its steps and may be asked to end.
 
-    The result is a `SolvedPoint` as plain JSON. Raises InputError where memory runs out.
+    The result is a `SolvedPoint` as plain JSON. Raises InputError where memory runs out, and where
+    the solver cannot be compiled.
 
     """
     last = -PAUSE
@@ -101,7 +103,12 @@ def solve(request: Mapping[str, Any]) -> dict[str, Any]:
             tell(step)
 
     try:
+        check()
         return asdict(solve_point(request, progress=report, cancel=cancelled.is_set))
+    except ImportError as error:
+        raise InputError(
+            f'a full solve needs numba: {error}: pip install numba where the node runs'
+        ) from None
     except MemoryError:
         most = resource.getrlimit(resource.RLIMIT_DATA)[0]
         raise InputError(f'the solve needs more than {most / 2**30:g} GiB of memory') from None

@@ -117,6 +117,10 @@ def _identify(args: argparse.Namespace) -> int:
     from surrogate.identify.record import identification_record, page
 
     _check(args)
+    if args.tier == 'full':
+        from surrogate.compiler import check
+
+        check()
     screw, lubricant = load_inputs(args)
     run = _run(args, screw, lubricant)
     fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))

@@ -40,10 +40,13 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
 def _sweep(args: argparse.Namespace) -> int:
     from surrogate.builder.sweep import Built, load_catalogue, sweep
     from surrogate.builder.sweep_report import JSON_NAME, PAGE_NAME, SweepReport
+    from surrogate.compiler import check
     from surrogate.tasks.progress import Progress
     from surrogate.tasks.workers import open_pool
 
     items = load_catalogue(args.catalogue)
+    if any(item.tier == 'full' for item in items):
+        check()
     for screw in dict.fromkeys(item.screw for item in items):
         examine(screw)
     report = SweepReport(args.catalogue, items, args.out)

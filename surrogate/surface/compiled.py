@@ -43,6 +43,9 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     Raises ImportError without numba.
 
     """
+    from surrogate.compiler import check
+
+    check()
     import numba
     from numba.extending import register_jitable
 

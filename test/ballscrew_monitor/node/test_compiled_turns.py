@@ -81,7 +81,7 @@ def test_what_cannot_be_compiled_is_warned_of_once(bench, refusal, says):
 def test_before_each_module_that_it_loads_the_thread_waits_until_nothing_waits(
     bench, monkeypatch, tmp_path, breaks
 ):
-    """Modules that another thread imports meanwhile come at once."""
+    """Another thread that imports meanwhile does not wait for the inputs itself."""
     for name in ('turns_first', 'turns_second', 'turns_aside'):
         (tmp_path / f'{name}.py').write_text('1 / 0' if breaks and 'second' in name else '')
         monkeypatch.delitem(sys.modules, name, raising=False)
