@@ -4,8 +4,8 @@
 The compiler of the kernels of a solve.
 
 Interpreted, a point of the full tier takes minutes and does not converge within the time cap of a
-contact. So without a numba that runs a kernel can be imported, along with what needs none, and refuses to be
-called.
+contact. So without a numba that runs, a kernel can be imported, along with what needs none, and
+refuses to be called.
 
 """
 

@@ -38,6 +38,18 @@ def test_a_kernel_refuses_to_be_called_without_numba(bare):
         assert refusal.value.name == 'numba'
 
 
+def test_a_numba_that_does_not_run_is_said_to_be_the_reason(monkeypatch, tmp_path):
+    (tmp_path / 'numba.py').write_text("raise ImportError('needs another NumPy')\n")
+    with monkeypatch.context() as broken:
+        broken.syspath_prepend(tmp_path)
+        broken.delitem(sys.modules, 'numba')
+        importlib.reload(compiler)
+        with pytest.raises(ImportError, match='^needs another NumPy$') as refusal:
+            compiler.check()
+    importlib.reload(compiler)
+    assert refusal.value.name == 'numba'
+
+
 def test_a_kernel_is_compiled_with_numba():
     compiler.check()
     assert compiler.njit(lambda number: 2 * number)(2) == 4

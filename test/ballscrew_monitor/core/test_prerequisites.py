@@ -24,6 +24,8 @@ FULL = (
     ('figures', '--out', '{out}'),
     ('validate',),
     ('surface', 'build', '--out', '{out}/b.npz', '--workers', '1'),
+    ('surface', 'sweep', '{full}', '--out', '{out}'),
+    ('identify', '{csv}', '--tier', 'full'),
 )
 SOLVES = (
     *FULL,
@@ -125,7 +127,9 @@ def places(short_bag, tmp_path_factory):
     folder = tmp_path_factory.mktemp('without')
     (folder / 'drag.csv').write_text('speed_rpm,torque_Nm\n100,0.11\n800,0.18\n1600,0.26\n')
     (folder / 'catalogue.yaml').write_text('screws: [nominal]\noils: [iso_vg_68]\n')
-    names = {'csv': 'drag.csv', 'catalogue': 'catalogue.yaml', 'out': 'out'}
+    tier = 'tier: full\n'
+    (folder / 'full.yaml').write_text((folder / 'catalogue.yaml').read_text() + tier)
+    names = {'csv': 'drag.csv', 'catalogue': 'catalogue.yaml', 'full': 'full.yaml', 'out': 'out'}
     return {'bag': short_bag} | {name: folder / path for name, path in names.items()}
 
 

@@ -110,3 +110,14 @@ def test_a_worker_tells_its_steps_and_is_taken_back_in_the_middle(monkeypatch):
     monkeypatch.setattr('surrogate.builder.on_demand.solve_screw', starve)
     sentence = run_task('surrogate.builder.on_demand:solve', request())['sentence']
     assert re.fullmatch(r'the solve needs more than \S+ GiB of memory', sentence)
+
+
+def test_a_worker_without_a_compiler_says_what_to_install(monkeypatch):
+    def refuse():
+        raise ModuleNotFoundError("No module named 'numba'", name='numba')
+
+    monkeypatch.setattr('surrogate.builder.on_demand.check', refuse)
+    sentence = run_task('surrogate.builder.on_demand:solve', request())['sentence']
+    assert sentence == (
+        "a full solve needs numba: No module named 'numba': pip install numba where the node runs"
+    )
