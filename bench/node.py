@@ -81,8 +81,10 @@ def measure(domain: int, asked: argparse.Namespace) -> Findings:
     for axes, period in ((1, 0.0), *((axes, 0.1) for axes in asked.axes)):
         with peers(domain, axes, period, asked.record) as (bare, node, start):
             found.starts.append((axes, start))
+            loaded = False
             for rate in asked.rates:
-                if 2 * axes * rate >= COMPILED_FROM:
+                if 2 * axes * rate >= COMPILED_FROM and not loaded:
+                    loaded = True
                     loading = node.take_turn(rate, LOADING)
                     found.turns.append(dataclasses.replace(loading, kind='loads'))
                     print(line_of(found.turns[-1:]), flush=True)
