@@ -34,7 +34,7 @@ def joined(series):
     )
 
 
-@pytest.fixture(params=[1, 2, sources.BLOCK])
+@pytest.fixture(params=[1, sources.BLOCK])
 def read(tmp_path, write_csv, request, monkeypatch):
     """Return a function that reads columns, by the time t unless told otherwise."""
     monkeypatch.setattr(sources, 'BLOCK', request.param)
