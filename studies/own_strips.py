@@ -108,6 +108,8 @@ def sheet_of(own: Own) -> Screw:
     roughness = replace(
         screw.roughness,
         rms=1e-6 * own.rms_um,
+        rms_low=None,
+        rms_high=None,
         lay=cast('Lay', own.lay),
         fan_angle=None if own.lay == ISO else math.radians(own.fan_deg),
         fractal_dimension=own.fractal_dimension,
