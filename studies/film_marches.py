@@ -191,6 +191,8 @@ def sheet_of(case: Case) -> Screw:
     roughness = replace(
         screw.roughness,
         rms=1e-6 * case.rms_um,
+        rms_low=None,
+        rms_high=None,
         lay=cast('Lay', case.lay),
         fan_angle=None if case.lay == ISO else math.radians(case.fan_deg),
         fractal_dimension=case.fractal_dimension,
@@ -289,22 +291,35 @@ def told_over_marched(row: Marched) -> float:
     return float(film) / COARSE_FILM / (1e-9 * row.film_nm)
 
 
-def held_out_misses(rows: Sequence[Marched]) -> dict[str, list[float]]:
-    """
-    Return how far marched films lie from those of the law, as logarithms, by the lay.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HeldOut:
+    """A strip that chose neither form nor constants; its `miss` is ln(marched over told film)."""
 
-    Of coarse strips that chose neither its form nor its constants: the marches held out and the
-    strips of own screws.
+    raceway: str
+    lay: str
+    state: str
+    miss: float
 
-    """
-    misses = {lay: [] for lay in FILM_BANDS}  # type: dict[str, list[float]]
-    for row in rows:
-        if row.role == 'held out':
-            misses[row.lay].append(-math.log(told_over_marched(row)))
-    for strip in read_table(own_strips.RESULTS, own_strips.Strip):
-        if strip.strip != FINER and math.isfinite(strip.film_factor):
-            misses[strip.lay].append(math.log(strip.film_factor))
-    return misses
+
+def held_out_strips(rows: Sequence[Marched]) -> list[HeldOut]:
+    """Return the coarse strips that were held out: designed marches, and those of own screws."""
+    strips = [
+        HeldOut(
+            raceway=row.march, lay=row.lay, state=row.state, miss=-math.log(told_over_marched(row))
+        )
+        for row in rows
+        if row.role == 'held out'
+    ]
+    return strips + [
+        HeldOut(
+            raceway=f'own {1 + row.own}',
+            lay=row.lay,
+            state=own_strips.OWN[row.own].state,
+            miss=math.log(row.film_factor),
+        )
+        for row in read_table(own_strips.RESULTS, own_strips.Strip)
+        if row.strip != FINER and math.isfinite(row.film_factor)
+    ]
 
 
 def nine_of_ten(misses: Sequence[float]) -> float:
@@ -312,7 +327,8 @@ def nine_of_ten(misses: Sequence[float]) -> float:
     Return the factor within which a further strip lies nine times of ten, up to a twentieth [-].
 
     By split conformal prediction (Vovk, Gammerman, Shafer 2005): of n misses as logarithms the
-    ceil(0.9 (n + 1))-th.
+    ceil(0.9 (n + 1))-th. It needs strips that are exchangeable with the further one; four of one
+    raceway are not exchangeable with one of another raceway.
 
     """
     place = math.ceil(0.9 * (len(misses) + 1))
@@ -342,12 +358,17 @@ def report(rows: Sequence[Marched]) -> Iterator[str]:
                 f'{100 * math.sqrt(np.mean(off**2)):.0f} %, '
                 f'{int((np.abs(off) < math.log(band)).sum())} within {band:g}'
             )
-    for lay, misses in held_out_misses(rows).items():
-        off = np.array(misses)
-        yield (
-            f'all held out, {lay}: {off.size}, mean {math.exp(off.mean()):.2f}, rms '
-            f'{100 * math.sqrt(np.mean(off**2)):.0f} %, nine of ten within {nine_of_ten(misses):g}'
-        )
+    strips = held_out_strips(rows)
+    for lay, band in FILM_BANDS.items():
+        for states in (('new', 'run_in'), ('new',), ('run_in',)):
+            part = [strip for strip in strips if strip.lay == lay and strip.state in states]
+            off = np.array([strip.miss for strip in part])
+            yield (
+                f'all held out, {lay}, {" and ".join(states)}: {off.size} of '
+                f'{len({strip.raceway for strip in part})} raceways, mean '
+                f'{math.exp(off.mean()):.2f}, rms {100 * math.sqrt(np.mean(off**2)):.1f} %, '
+                f'{int((np.abs(off) < math.log(band)).sum())} within {band:g}'
+            )
 
 
 def main() -> None:

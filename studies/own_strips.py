@@ -5,8 +5,10 @@ Own screws, their raceways marched as `surface build` does, and a fourth strip h
 
 Usage: python studies/own_strips.py [--report].
 
-Each strip that ends is added to results/own_strips.csv at once, and one that is there is not
-marched again. Last it prints how the corrected law tells the strips that were held out.
+Each strip that ends is added to results/own_strips_confined.csv at once, and one that is there is
+not marched again. Those of results/own_strips.csv were marched on tiles whose summits were cut at
+their hardness alone. Last it prints how the corrected law tells the strips that were held out, and
+how both cuts differ.
 
 """
 
@@ -25,6 +27,9 @@ from surrogate.raceway.stated import NINE_OF_TEN, State
 from surrogate.tasks.table import read_table, write_table
 
 RESULTS = Path('studies/results/own_strips.csv')
+"""Strips of tiles whose summits were cut at their hardness, without the mean pressure."""
+CONFINED = Path('studies/results/own_strips_confined.csv')
+"""Strips of the tiles that a build marches."""
 HELD_OUT = 'strip 4'
 """Name of the strip that corrects nothing."""
 WANTED = 1.15
@@ -108,6 +113,8 @@ def sheet_of(own: Own) -> Screw:
     roughness = replace(
         screw.roughness,
         rms=1e-6 * own.rms_um,
+        rms_low=None,
+        rms_high=None,
         lay=cast('Lay', own.lay),
         fan_angle=None if own.lay == ISO else math.radians(own.fan_deg),
         fractal_dimension=own.fractal_dimension,
@@ -183,6 +190,15 @@ def report(rows: Sequence[Strip]) -> Iterator[str]:
         yield f'{lay}: {sum(every)} of {len(every)} inside'
 
 
+def confined_over_alone(alone: Sequence[Strip], confined: Sequence[Strip]) -> Iterator[str]:
+    """Yield films over that of the law of tiles as built, and over that with the other cut [-]."""
+    known = {(row.own, row.strip, row.side): row.film_factor for row in alone}
+    for row in confined:
+        text = f'{1 + row.own} {row.lay}, {row.strip}, as built: {row.film_factor:.2f}'
+        cut_alone = known.get((row.own, row.strip, row.side))
+        yield f'{text}, {row.film_factor / cut_alone:.2f} of the other cut' if cut_alone else text
+
+
 def wanted() -> Iterator[tuple[int, str, dict[str, Any]]]:
     """Yield all strips: of every screw the coarse ones, then the finer ones."""
     for finer in (False, True):
@@ -197,13 +213,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--report', action='store_true', help='march nothing')
     if not parser.parse_args().report:
-        there = {(row.own, row.strip) for row in read_table(RESULTS, Strip)}
+        there = {(row.own, row.strip) for row in read_table(CONFINED, Strip)}
         for number, name, task in wanted():
             if (number, name) not in there:
                 strip = march(number, name, OWN[number].lay, task)
-                write_table(RESULTS, Strip, [*read_table(RESULTS, Strip), strip], digits=5)
+                write_table(CONFINED, Strip, [*read_table(CONFINED, Strip), strip], digits=5)
                 print(strip, flush=True)
-    print(*report(read_table(RESULTS, Strip)), sep='\n')
+    alone, confined = (read_table(path, Strip) for path in (RESULTS, CONFINED))
+    print(*report(alone), *confined_over_alone(alone, confined), sep='\n')
 
 
 if __name__ == '__main__':

@@ -80,4 +80,10 @@ def _value(spec: Any, text: str) -> Any:
     try:
         return int(text) if spec.metadata.get('whole') else float(text)
     except ValueError:
+        if spec.name == 'turns' and '+' in text:
+            raise InputError(
+                f"screw new: turns is '{text}', allowed is one number: turns of two nuts or "
+                'halves are not modelled apart; with nut double state their mean, with nut offset '
+                'their sum'
+            ) from None
         return text

@@ -95,7 +95,7 @@ def sensitivity_record(
 
 def _row(varied: Varied, case: ScrewCase, stated: Mapping[str, float]) -> dict[str, Any]:
     """Return what one input changes, NaN at an end that the model refuses, with its sentence."""
-    rules, ends, outcomes, refused = varied.rules(case), varied.bounds(case), [], ''
+    rules, ends, outcomes, refused = varied.rules(case, varied.name), varied.bounds(case), [], ''
     assert ends is not None  # those without were left out
     for value in ends:
         try:

@@ -68,7 +68,8 @@ class Varied:
 
     The `reason` of the range, and how the input is measured, empty for one that is in no band. The
     range is `times` below and above the stated value [-], or `plus` [SI], or `ends` say it [SI],
-    None where a sheet has no such input. Fields that change `also`.
+    None where a sheet has no such input. Fields that change `also`: to the value of an end, by the
+    step of another range.
 
     """
 
@@ -93,14 +94,18 @@ class Varied:
             ends = value / self.times - self.plus, value * self.times + self.plus
         if ends is None:
             return None
-        rules = self.rules(case)
-        least, most = ((rules[end] + rules['shift']) * rules['factor'] for end in ('low', 'high'))
-        return max(ends[0], least), min(ends[1], most)
+        return self.within(case, self.name, ends[0]), self.within(case, self.name, ends[1])
 
-    def rules(self, case: ScrewCase) -> Mapping[str, Any]:
-        """Return what a sheet states of the field: unit, factor, limits."""
+    def rules(self, case: ScrewCase, name: str) -> Mapping[str, Any]:
+        """Return what a sheet states of a field of the part: unit, factor, limits."""
         every = fields(getattr(case, self.part))
-        return next(spec.metadata for spec in every if spec.name == self.name)
+        return next(spec.metadata for spec in every if spec.name == name)
+
+    def within(self, case: ScrewCase, name: str, value: float) -> float:
+        """Return a value of a field of the part, or the next one that a sheet may state [SI]."""
+        rules = self.rules(case, name)
+        least, most = ((rules[end] + rules['shift']) * rules['factor'] for end in ('low', 'high'))
+        return min(max(value, least), most)
 
     def at(self, case: ScrewCase, value: float) -> ScrewCase:
         """Return a case in which the input has a value [SI]."""
@@ -108,7 +113,11 @@ class Varied:
             # The same state, cut at another pressure: marches hold.
             marches = {name: getattr(case.roughness, name) for name in Roughness.MARCHED}
             return replace(case, screw=with_raceway(run_in_at(case.screw, value), **marches))
-        return case.changed(self.part, **dict.fromkeys((self.name, *self.also), value))
+        if self.ends is not None:
+            return case.changed(self.part, **dict.fromkeys((self.name, *self.also), value))
+        part, step = getattr(case, self.part), value - (self.stated(case) or 0.0)
+        moved = {name: self.within(case, name, getattr(part, name) + step) for name in self.also}
+        return case.changed(self.part, **{self.name: value}, **moved)
 
 
 def _heights(case: ScrewCase) -> Ends:

@@ -17,15 +17,28 @@ def rows(machines):
     return list(machines.rows_of('staircase', machines.SPEEDS, range(6)))
 
 
-def test_the_factor_of_machines_outside_the_fit_is_told(rows, machines):
-    """Six strips, each with a seal, a ripple, noise and an oil that warms up."""
+def test_what_is_stated_of_machines_outside_the_fit_holds(rows):
+    """Six strips, each with a seal, a ripple, noise and an oil that warms up; most are told."""
     assert len({row['march'] for row in rows}) == 6
-    off = [row['onset_factor_found'] / row['onset_factor'] for row in rows]
-    assert sum(1 / machines.WITHIN < one < machines.WITHIN for one in off) >= 5
+    closed = [row for row in rows if not row['onset_factor_reason']]
+    assert len(closed) >= 4
     held = [
-        row['onset_factor_low'] < row['onset_factor'] < row['onset_factor_high'] for row in rows
+        row['onset_factor_low'] < row['onset_factor'] < row['onset_factor_high'] for row in closed
     ]
-    assert sum(held) >= 5
+    assert sum(held) >= len(held) - 1
+    off = [row['onset_factor_found'] / row['onset_factor'] for row in closed]
+    assert max(off) < 2
+    assert min(off) > 0.5
+
+
+def test_drag_beside_the_contacts_is_two_to_eight_times_theirs(rows, machines):
+    """By the mean torque of the nominal contacts, from which those of a machine differ by 1.5."""
+    contacts = machines.closed_form.solve(
+        machines.OPENED, machines.OIL, machines.SPEEDS * machines.RPM, 0.0, machines.WARM
+    ).friction_torque.mean()
+    over = [row['parasitic_torque'] / contacts for row in rows]
+    assert min(over) > 2 / 1.5
+    assert 4 < max(over) < 8 * 1.5
 
 
 def test_a_machine_touches_as_its_march_does(machines):

@@ -66,6 +66,8 @@ def test_a_page_of_a_single_nut_does_not_become_two_nuts(run, tmp_path, capsys, 
     page += ('--turns', 5, '--dynamic-rating-kN', 21.3, '--ra-um', 0.16, '--out', path)
     refused('nut_missing', run, 'screw', 'new', *page)
     refused('nut_turns', run, 'screw', 'new', '--nut', 'offset', *page, '--turns', 1.5)
+    for nut in ('double', 'offset'):
+        refused('turns_apart', run, 'screw', 'new', '--nut', nut, *page, '--turns', '3+2')
     refused('plain_preloaded', run, 'screw', 'new', '--nut', 'plain', *page, '--preload-N', 500)
     assert not path.exists()
     assert run('screw', 'new', '--nut', 'offset', *page) == 0

@@ -212,6 +212,19 @@ def test_every_end_of_every_input_is_a_sheet(screw, oil):
     assert {spec.name for spec in fields(OperatingPoint)} >= {'temperature'}
 
 
+def test_unequal_conformities_move_by_the_same_step(screw, oil):
+    """The nut from its own value, as far as a sheet may state it."""
+    uneven = replace(screw, conformity_screw=0.52, conformity_nut=0.54)
+    groove, case = BY_NAME['conformity_screw'], ScrewCase(screw=uneven, lubricant=oil, point=POINT)
+    sheets = [groove.at(case, value).screw for value in groove.bounds(case)]
+    assert [sheet.conformity_screw for sheet in sheets] == pytest.approx([0.51, 0.53])
+    assert [sheet.conformity_nut for sheet in sheets] == pytest.approx([0.53, 0.55])
+    stated = groove.at(case, groove.stated(case)).screw
+    assert (stated.conformity_screw, stated.conformity_nut) == (0.52, 0.54)
+    tight = replace(case, screw=replace(uneven, conformity_nut=0.505))
+    assert groove.at(tight, 0.51).screw.conformity_nut == 0.501
+
+
 def test_the_page_says_where_the_law_is_off_by_more_than_its_band(screw, oil, record, says):
     assert record['law_doubt'] == ''
     assert '\n  law ' not in sensitivity_page(record)
