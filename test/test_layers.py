@@ -60,6 +60,7 @@ OFFLINE_FLOORS = (
 """Folders and single modules of the offline half, the lowest first."""
 STANDS_ON = {
     'surface': {
+        'surrogate.compiler',
         'surrogate.files',
         'surrogate.formulas.torque',
         'surrogate.files.limits',
