@@ -380,6 +380,23 @@ def _check_unit(name: str, below: str) -> None:
         )
 
 
+def _lacks_unit(name: str, unit: str) -> bool:
+    """
+    Return True if a cell of a row of units is to stand behind a name.
+
+    The brackets of the name hold no unit: a letter that is none of its quantity is of an axis. An
+    unknown unit of a quantity is kept, lest the usual one be taken for it.
+
+    """
+    kind = read_name(BRACKETS.sub(' ', name)).kind or read_name(name).kind
+    held = any(
+        is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
+        for text in BRACKETS.findall(name)
+    )
+    unknown = kind not in ('', 'time') and any(map(str.isalpha, unit))
+    return not held and (is_unit(unit) or unknown)
+
+
 def _joined(name: str, below: str) -> str:
     bare = is_unit(below) and below[0] not in '[('
     return f'{name} [{below}]' if bare else f'{name} {below}'.strip()
@@ -427,7 +444,7 @@ class _Above:
         for name, unit in zip(names, units, strict=False):
             _check_unit(name, unit)
         told = unlike(
-            f'{name} [{unit}]' if is_unit(unit) and not BRACKETS.search(name) else name or unnamed
+            f'{name} [{unit}]' if _lacks_unit(name, unit) else name or unnamed
             for name, unit, unnamed in zip(
                 names, units, (UNNAMED.format(at + 1) for at in range(self.width)), strict=True
             )

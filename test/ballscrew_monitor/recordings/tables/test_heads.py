@@ -74,6 +74,27 @@ def test_a_name_and_the_row_of_units_that_contradict_it_are_refused(name, cell, 
     assert cell in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ('name', 'cell', 'called'),
+    [
+        ('Drehzahl (X)', 'rpm', 'Drehzahl (X) [rpm]'),
+        ('Drehzahl (ist)', 'rpm', 'Drehzahl (ist) [rpm]'),
+        ('Drehzahl (Achse 1)', '1/s', 'Drehzahl (Achse 1) [1/s]'),
+        ('Position (A)', 'inch', 'Position (A) [inch]'),
+        ('Position (C)', 'inch', 'Position (C) [inch]'),
+        ('Strom (A)', 'A', 'Strom (A)'),
+        ('Position [mm]', 'mm', 'Position [mm]'),
+        ('Drehzahl', '1/s', 'Drehzahl [1/s]'),
+        ('Nut temperature (X)', '°F', 'Nut temperature (X) [°F]'),
+        ('Nut temperature', '-', 'Nut temperature'),
+        ('Programm (alt)', 'REAL', 'Programm (alt)'),
+    ],
+)
+def test_a_unit_below_a_name_is_that_of_its_column(name, cell, called):
+    text = f't;{name};F\ns;{cell};N\n' + 9 * '0;1;2\n'
+    assert head_of(text).names == ('t [s]', called, 'F [N]')
+
+
 @given(strategies.lists(strategies.text(max_size=20), max_size=9))
 def test_whatever_the_lines_are_there_is_a_head_within_them_or_none(lines):
     try:
