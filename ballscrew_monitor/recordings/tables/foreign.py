@@ -35,6 +35,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     OTHER_ROWS,
     RECORDER,
 )
+from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import RATED
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, words_of
 from ballscrew_monitor.recordings.words import listed
@@ -90,7 +91,8 @@ class Signals:
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
     to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
     reason why a part of the file is not among them, by its name, and `more_rows` the records there
-    of the same signals; `empty_rows` are numbers of records without any.
+    of the same signals; `empty_rows` are numbers of records without any; `arrays` are the lengths
+    of those that stand side by side.
 
     """
 
@@ -104,6 +106,7 @@ class Signals:
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
     empty_rows: Sequence[int] = ()
+    arrays: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -222,6 +225,7 @@ def _json(path: Path) -> Signals:
                 period=period,
                 unclear_period=unclear,
                 left_out=dict.fromkeys(sorted(nested), OF_LISTS),
+                arrays=_lengths(lists),
             )
         chosen = max(records, key=lambda name: json_layouts.motion_of(lists[name]))
         content = json_layouts.plain_table(lists[chosen])
@@ -262,14 +266,14 @@ def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
     return len(others) if held[0] and held[0] <= held[1] else 0
 
 
-def _period_beside(content: Mapping[str, Any], lists: Iterable[str]) -> tuple[float, str]:
+def _period_beside(content: Mapping[str, Any], lists: Mapping[str, Any]) -> tuple[float, str]:
     """Return the period [s] that a number beside lists states, and what may be one if unclear."""
     stated = json_layouts.stated_periods(content)
     numbers = {key: one for key, one in content.items() if isinstance(one, int | float)}
     periods = stated | _periods(numbers)
     others = _of_other_rows(numbers)
     told = ', '.join(f'{name} = {numbers[name]:g}' for name in [*periods, *others])
-    if others:
+    if others or _are_uneven(lists):
         period = math.nan
     elif len(periods) == 1 and stated:
         (period,) = stated.values()
@@ -508,13 +512,15 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
     scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
     others = _of_other_rows(scalars)
     told = ', '.join(f'{name} = {float(content[name]):g}' for name in [*periods, *others])
-    period = math.nan if others else _period_of_rows(periods, held)
+    unknown = others or _are_uneven(held)
+    period = math.nan if unknown else _period_of_rows(periods, held)
     return Signals(
         frame=_side_by_side(held, np.float64),
         period=period,
         factors=', '.join(_stated_factors(scalars)),
         unclear_period=told if math.isnan(period) else '',
         left_out=left_out,
+        arrays=_lengths(held),
     )
 
 
@@ -527,6 +533,15 @@ def _period_of_rows(periods: Mapping[str, float], arrays: Iterable[str]) -> floa
     beside = all(one.rpartition('.')[0] == group for one in arrays)
     plain = last.lower() not in DOUBTFUL
     return period if beside and plain and period <= LONGEST_PERIOD else math.nan
+
+
+def _lengths(columns: Mapping[str, Any]) -> dict[str, int]:
+    return {name: len(column) for name, column in columns.items()}
+
+
+def _are_uneven(columns: Mapping[str, Any]) -> bool:
+    """Return True if quantities are of several lengths: a period is that of one of them alone."""
+    return len({len(column) for name, column in columns.items() if read_name(name).kind}) > 1
 
 
 def _side_by_side(columns: Mapping[str, Any], kind: Any = None) -> pl.DataFrame:
@@ -602,14 +617,18 @@ def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None])
             'with a column of the time'
         )
     if not clocks:
-        return Signals(frame=_side_by_side(held))
+        return Signals(frame=_side_by_side(held), arrays=_lengths(held))
     first = min(clocks, key=lambda wave: _begin(wave))
     start = '' if first.start is None else str(first.start + np.timedelta64(first.offset, 'ns'))
     if len(clocks) == 1:
         unclear = f'{told}, none of {listed(bare)}' if bare else ''
         period = math.nan if bare else first.step
         return Signals(
-            frame=_side_by_side(held), period=period, unclear_period=unclear, start=start
+            frame=_side_by_side(held),
+            period=period,
+            unclear_period=unclear,
+            start=start,
+            arrays=_lengths(held) if bare else {},
         )
     columns: dict[str, Any] = {}
     for wave in clocks:

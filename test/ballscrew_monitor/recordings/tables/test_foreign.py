@@ -548,6 +548,48 @@ def test_json_that_nests_deeply_is_refused_before_it_is_a_table(tmp_path, refuse
     refused('deep_records', guess, path)
 
 
+def of_arrays(kind, path, arrays):
+    if kind == 'mat':
+        scipy.io.savemat(path, arrays)
+    elif kind == 'json':
+        path.write_text(
+            json.dumps({name: np.asarray(one).tolist() for name, one in arrays.items()})
+        )
+    else:
+        with h5py.File(path, 'w') as file:
+            for name, values in arrays.items():
+                file[name] = values
+
+
+@pytest.mark.parametrize('kind', ['mat', 'h5', 'json'])
+@pytest.mark.parametrize('time', [{'time_s': TIME}, {'dt': STEP}, {}])
+@pytest.mark.parametrize('count', [COUNT // 2, COUNT - 1, 2 * COUNT])
+def test_an_array_of_another_length_than_its_time_has_no_known_time(
+    kind, time, count, tmp_path, says, refused
+):
+    path = tmp_path / f'log.{kind}'
+    arrays = {'x_vel_mm_s': SPEED, 'x_force_N': 50.0 * np.cos(np.arange(count))}
+    of_arrays(kind, path, time | arrays)
+    made = guess(path)
+    beside = 'time_s' if 'time_s' in time else 'x_vel_mm_s'
+    assert made.content['axes']['x']['load']['time'] is None
+    expected = says('uneven_arrays', count=count, beside=beside)
+    assert any(one.endswith(expected) for one in made.unstated)
+    if 'time_s' not in time:
+        assert made.content['time'] == {'rate_Hz': None}
+    content = made.content | ({} if 'time_s' in time else {'time': {'rate_Hz': 500.0}})
+    del content['axes']['x']['load']['time']
+    with refused('uneven_columns', count=count, beside=beside):
+        read_series(path, make_map(content))
+
+
+def test_an_array_that_is_no_signal_does_not_hide_the_rate(tmp_path):
+    path = tmp_path / 'log.mat'
+    arrays = {'x_vel_mm_s': SPEED, 'x_force_N': SPEED, 'table': np.arange(5.0), 'dt': STEP}
+    scipy.io.savemat(path, arrays)
+    assert guess(path).content['time'] == {'rate_Hz': 500.0}
+
+
 START = np.datetime64('2025-07-14T11:59:50.250')
 LATER = START + np.timedelta64(1500, 'ms')
 
