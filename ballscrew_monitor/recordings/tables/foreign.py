@@ -73,6 +73,11 @@ JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
 """How JSON begins; the name of a section in brackets does otherwise."""
 NUMBERS = re.compile(rb'[\[,:"=]\s*-?\d[\d.eE+-]*\s*(?=[\],}"])')
 """Numbers of JSON, and those in quotes."""
+NAMES_OF_CELLS = {
+    'json': re.compile(rb'"((?:[^"\\]|\\.)*)"\s*:', re.S),
+    'xml': re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
+}
+"""Names of cells in texts of signals."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 RATES = frozenset(
     'fs rate samplerate samplingrate samplefrequency samplingfrequency frequency'.split()
@@ -158,11 +163,21 @@ def read_signals(path: Path, kind: str) -> Signals:
             f'log {path} has more than {most // limits.MEGA} MB, allowed for its kind: save its '
             'signals as CSV or Parquet'
         )
-    if kind not in BINARY and size <= limits.TEXT:
+    if kind not in BINARY and size <= limits.TEXT and _come_to(path, kind) <= limits.CELLS_HERE:
         return _signals(path, kind)
     frame, told = frame_apart(path, f'{__name__}:write_signals', kind=kind)
     programs = {one.program: one for one in (*FORMATS, ADAPTER, RECORDER)}
     return Signals(frame=frame, **{**told, 'program': programs.get(told['program'])})
+
+
+def _come_to(path: Path, kind: str) -> int:
+    """Return what cells of JSON or XML come to at most [byte]: a few names may be of many rows."""
+    if kind not in NAMES_OF_CELLS:
+        return 0
+    text = path.read_bytes()
+    names = {match[1] for match in NAMES_OF_CELLS[kind].finditer(text)}
+    records, cells = text.count(b'{' if kind == 'json' else b'rec'), text.count(b',')
+    return len(names) * max(records * limits.RECORD_CELL, cells * limits.NUMBER_CELL)
 
 
 def write_signals(inputs: Mapping[str, str]) -> dict[str, Any]:
@@ -253,7 +268,9 @@ def _of_records(
 ) -> pl.DataFrame:
     """Return records as rows, with a column for each name that one of them holds."""
     names = {name: None for record in records for name in record if name not in without}
-    check_room(len(records), len(names))
+    check_room(len(records), len(names), limits.RECORD_CELL)
+    if len(names) > limits.COLUMNS:
+        raise Unreadable(f'it has {len(names)} columns, allowed are {limits.COLUMNS}')
     return pl.from_dicts(
         [{name: record.get(name) for name in names} for record in records] if without else records,
         infer_schema_length=None,

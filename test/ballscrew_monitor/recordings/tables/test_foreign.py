@@ -288,6 +288,45 @@ def test_groups_of_arrays_that_are_not_read_are_named(later, tmp_path, says):
         }
 
 
+RECORDS = {
+    'log.json': lambda names: json.dumps([{name: 1.5} for name in names]),
+    'log.xml': lambda names: '<t>' + ''.join(f'<rec {name}="1.5"/>' for name in names) + '</t>',
+}
+
+
+@pytest.mark.parametrize('name', RECORDS)
+@pytest.mark.parametrize('count', [100, 101])
+def test_records_of_many_names_are_read_by_a_process_of_its_own(
+    name, count, tmp_path, monkeypatch
+):
+    path, tasks, result = tmp_path / name, [], apart.result_apart
+    path.write_text(RECORDS[name]([f'a{at}' for at in range(count)]))
+
+    def counted(task, inputs, **options):
+        tasks.append(task)
+        return result(task, inputs, **options)
+
+    monkeypatch.setattr(apart, 'result_apart', counted)
+    monkeypatch.setattr(foreign.limits, 'CELLS_HERE', 100 * 100 * 64)
+    assert foreign.read_signals(path, name[4:]).frame.shape == (count, count)
+    assert bool(tasks) is (count > 100)
+
+
+@pytest.mark.parametrize('name', RECORDS)
+@pytest.mark.parametrize(
+    ('key', 'limit', 'most'),
+    [('records_room', 'SPARSE', 20 * 20 * 64 - 1), ('records_wide', 'COLUMNS', 19)],
+)
+def test_records_are_counted_before_they_are_cells(
+    name, key, limit, most, tmp_path, monkeypatch, refused
+):
+    path = tmp_path / name
+    path.write_text(RECORDS[name]([f'a{at}' for at in range(20)]))
+    monkeypatch.setattr(pl, 'from_dicts', None)
+    monkeypatch.setattr(foreign.limits, limit, most)
+    refused(key, foreign.read_signals, path, name[4:])
+
+
 @pytest.mark.parametrize('name', ['trace.json', 'log.mat'])
 def test_a_process_of_its_own_reads_the_same(name, tmp_path, monkeypatch):
     path, kind = tmp_path / name, name.partition('.')[2]
