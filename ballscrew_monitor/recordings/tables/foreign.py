@@ -468,7 +468,8 @@ def _hdf(path: Path) -> Signals:
             for field in item.dtype.names or ():
                 found[f'{called}.{field}'] = np.squeeze(item[field])
             if not item.dtype.names:
-                unit = item.attrs.get('unit', item.attrs.get('units', b''))
+                units = np.ravel(item.attrs.get('unit', item.attrs.get('units', b'')))
+                unit = units[0] if units.size else ''
                 told = unit.decode() if isinstance(unit, bytes) else str(unit)
                 found[f'{called} [{told}]' if told else called] = _scaled(item)
                 factors.extend(_unclear_factors(called, item.attrs))

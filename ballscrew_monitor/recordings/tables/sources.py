@@ -270,14 +270,22 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
 
 
 def is_log(path: Path) -> bool:
-    """Return True if a file begins with rows of numbers or signals, whatever its ending."""
+    """
+    Return True if a file begins with rows of numbers or signals, whatever its ending.
+
+    JSON and XML are read, but a large or packed text is judged by the numbers that it begins with.
+
+    """
     with contextlib.suppress(InputError):
         head = _head_of(path, limits.MEGA)
-        if head.startswith(codings.GZIP):
+        is_packed = head.startswith(codings.GZIP)
+        if is_packed:
             head = codings.unpacked(path, limits.MEGA)
         if head.startswith((PARQUET, ZIP)):
             return head.startswith(PARQUET)
         if kind := foreign.kind_of(head[:HEAD]):
+            if kind in ('json', 'xml') and not is_packed and path.stat().st_size <= limits.TEXT:
+                return bool(foreign.read_signals(path, kind).frame.width)
             return foreign.holds_numbers(head, kind, FEWEST)
         if codings.wide_coding(head):
             head = decoded(head).encode()

@@ -195,6 +195,15 @@ def test_attributes_of_a_dataset_scale_it_by_the_conventions_or_are_named(
     np.testing.assert_array_equal(signals.frame['v'], expected)
 
 
+@pytest.mark.parametrize('unit', ['N', b'N', ['N'], np.array([b'N']), np.array([['N']], object)])
+def test_a_unit_of_a_dataset_may_be_an_array_of_one(unit, tmp_path):
+    path = tmp_path / 'log.h5'
+    with h5py.File(path, 'w') as file:
+        file['force'] = SPEED
+        file['force'].attrs['units'] = unit
+    assert foreign.read_signals(path, 'hdf').frame.columns == ['force [N]']
+
+
 def test_values_on_change_stand_still_between(tmp_path):
     path = tmp_path / 'mill.shdr'
     lines = [f'2025-07-14T11:59:{50 + row / 10:06.3f}Z|Xact|{row}' for row in range(40)]
