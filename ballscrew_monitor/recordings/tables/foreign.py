@@ -25,7 +25,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import json_layouts, line_messages, long_form
 from ballscrew_monitor.recordings.tables.apart import check_room, frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
-from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
+from ballscrew_monitor.recordings.tables.heads import factor_word, Head, Property, unlike
 from ballscrew_monitor.recordings.tables.layouts import (
     ADAPTER,
     Format,
@@ -336,8 +336,7 @@ def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[st
 
 def _factor(label: str) -> str:
     """Return the word of a label for what scales or shifts the values, empty for any other."""
-    match = FACTOR.search(label.lower().replace('_', ' '))
-    return match[1] if match else 'cal' if label.lower() == 'cal' else ''
+    return 'cal' if label.lower() == 'cal' else factor_word(label.replace('_', ' '))
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
