@@ -404,6 +404,8 @@ def _xml(path: Path) -> Signals:
             start = start or held.get('startTime', '')
         elif tag == 'rec':
             rows.append(dict(held))
+    if not rows:
+        raise TypeError
     counts = Counter(keys.values())
     names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
     frame = _of_records(rows).rename(names, strict=False)

@@ -237,6 +237,7 @@ def test_a_reader_that_is_not_installed_is_named(
     [
         (b'[1, {"a": 2}]', 'no_json'),
         (b'{"Header": 3, "a": [{"b": 1}, 3]}', 'no_json'),
+        (b'<tools><tool id="0" length="1.5"/></tools>', 'no_xml'),
         (b'MATLAB 5.0' + bytes(200), 'no_mat'),
         (b'\x89HDF\r\n\x1a\n' + bytes(200), 'no_hdf'),
     ],
