@@ -400,8 +400,8 @@ def _lacks_unit(name: str, unit: str) -> bool:
     """
     Return True if a cell of a row of units is to stand behind a name.
 
-    The brackets of the name hold no unit: a letter that is none of its quantity is of an axis. An
-    unknown unit of a quantity is kept, lest the usual one be taken for it.
+    The brackets of the name must hold no unit; a letter there that names a unit of another
+    quantity is taken for an axis. An unknown unit is kept, lest the usual one be assumed.
 
     """
     kind = read_name(BRACKETS.sub(' ', name)).kind or read_name(name).kind
