@@ -59,6 +59,13 @@ XLSX_CELL = 80
 """What a cell of a workbook takes in memory while it is read, as measured [B]."""
 NUMBER_CELL = 8
 """What a number of a Parquet file or of a signal takes in memory while it is read [B]."""
+RECORD_CELL = 64
+"""What a cell of a record of JSON or XML takes in memory while it is read, as measured [B]."""
+CELLS_HERE = 128 * MEGA
+"""
+What the cells of a text of signals may come to [byte] that is read at once; one of more is read by
+a process of its own.
+"""
 TEXT_CELL = 16
 """What a text in a column of a signal takes in memory while it is read, at least [B]."""
 SPARSE = 640 * MEGA

@@ -57,7 +57,7 @@ def dated(path: Path, mapping: TableMap) -> TableMap:
     elif mapping.date_from == HEADER:
         moment = _known(_by_head(path, mapping), path, 'the lines above its table state none')
     else:
-        name = next((moment for moment, _ in dates_by_name(path) if moment is not None), None)
+        name = _by_name(path, mapping)
         moment = _known(name, path, 'neither its name nor that of its folder holds one')
     if moment.year < FIRST_YEAR:
         raise InputError(
@@ -115,6 +115,18 @@ def _by_head(path: Path, mapping: TableMap) -> datetime.datetime | None:
     return date_in_head(_head(path))
 
 
+def _by_name(path: Path, mapping: TableMap) -> datetime.datetime | None:
+    """Return the date that the name of a log or of its folder holds."""
+    for moment, text, of in dates_by_name(path, mapping.order):
+        if moment is None:
+            raise InputError(
+                f'log {path}: the date {text} in the name of the {of} may be of either order of '
+                'day and month: state time: {order: dmy} or mdy in the map'
+            )
+        return moment
+    return None
+
+
 def _known(moment: datetime.datetime | None, path: Path, reason: str) -> datetime.datetime:
     if moment is None:
         raise InputError(
@@ -124,19 +136,41 @@ def _known(moment: datetime.datetime | None, path: Path, reason: str) -> datetim
     return moment
 
 
-def dates_by_name(path: Path) -> Iterator[tuple[datetime.datetime | None, str]]:
-    """Yield the dates in the names of the file and of its folder, and of which each is."""
-    yield date_in_name(path.stem), 'file'
-    yield date_in_name(path.absolute().parent.name), 'folder'
+def dates_by_name(
+    path: Path, order: str = ''
+) -> Iterator[tuple[datetime.datetime | None, str, str]]:
+    """
+    Yield the dates in the names of the file and of its folder, each as it stands, and of which.
+
+    A date is None where its day and month may be of either order, and `order` does not say it.
+
+    """
+    for name, of in ((path.stem, 'file'), (path.absolute().parent.name, 'folder')):
+        if (match := _first_date(name)) is not None:
+            yield _in_order(match, order), match[0], of
 
 
-def date_in_name(name: str) -> datetime.datetime | None:
-    """Return the first date in a name, with the time of day if it follows, None for none."""
-    for match in IN_NAME.finditer(name):
-        moment = _moment(match, match)
-        if moment is not None:
-            return moment
-    return None
+def date_in_name(name: str, order: str = '') -> datetime.datetime | None:
+    """
+    Return the first date in a name, with the time of day if it follows, None for none.
+
+    It is None as well where day and month may be of either order, and `order` does not say it.
+
+    """
+    match = _first_date(name)
+    return None if match is None else _in_order(match, order)
+
+
+def _first_date(name: str) -> re.Match[str] | None:
+    return next((match for match in IN_NAME.finditer(name) if _moment(match, match)), None)
+
+
+def _in_order(match: re.Match[str], order: str) -> datetime.datetime | None:
+    """Return the moment of a date in a name by an order; with dots its day is the first."""
+    moment, first, second = _moment(match, match), match['day_first'], match['month_second']
+    if moment is None or not first or match['dot'] == '.' or first == second or int(first) > 12:
+        return moment
+    return {'dmy': moment, 'mdy': moment.replace(day=moment.month, month=moment.day)}.get(order)
 
 
 def date_in_head(text: str) -> datetime.datetime | None:

@@ -170,6 +170,10 @@ def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
     yield from _of_another_axis(mapping, what, table.source.sheet)
     factors = table.source.head.factors
     columns = [column for axis in mapping.axes for column in axis.columns.values()]
+    first = mapping.time or motion_of(mapping.axes[0])
+    for column in columns:
+        if fault := table.source.fault_of_length(column.name, column.time or first.name):
+            yield f'{fault}: state its `time` in the map, a column of its length'
     if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
         yield unclear_factors(factors)
     for axis in mapping.axes:

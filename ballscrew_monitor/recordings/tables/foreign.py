@@ -25,7 +25,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import json_layouts, line_messages, long_form
 from ballscrew_monitor.recordings.tables.apart import check_room, frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
-from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
+from ballscrew_monitor.recordings.tables.heads import factor_word, Head, Property, unlike
 from ballscrew_monitor.recordings.tables.layouts import (
     ADAPTER,
     Format,
@@ -35,6 +35,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     OTHER_ROWS,
     RECORDER,
 )
+from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import RATED
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, words_of
 from ballscrew_monitor.recordings.words import listed
@@ -72,6 +73,11 @@ JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
 """How JSON begins; the name of a section in brackets does otherwise."""
 NUMBERS = re.compile(rb'[\[,:"=]\s*-?\d[\d.eE+-]*\s*(?=[\],}"])')
 """Numbers of JSON, and those in quotes."""
+NAMES_OF_CELLS = {
+    'json': re.compile(rb'"((?:[^"\\]|\\.)*)"\s*:', re.S),
+    'xml': re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
+}
+"""Names of cells in texts of signals."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 RATES = frozenset(
     'fs rate samplerate samplingrate samplefrequency samplingfrequency frequency'.split()
@@ -90,7 +96,8 @@ class Signals:
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
     to be scaled, `unclear_period` of numbers that they may be the period. `left_out` has the
     reason why a part of the file is not among them, by its name, and `more_rows` the records there
-    of the same signals; `empty_rows` are numbers of records without any.
+    of the same signals; `empty_rows` are numbers of records without any; `arrays` are the lengths
+    of those that stand side by side.
 
     """
 
@@ -104,6 +111,7 @@ class Signals:
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
     empty_rows: Sequence[int] = ()
+    arrays: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -155,11 +163,21 @@ def read_signals(path: Path, kind: str) -> Signals:
             f'log {path} has more than {most // limits.MEGA} MB, allowed for its kind: save its '
             'signals as CSV or Parquet'
         )
-    if kind not in BINARY and size <= limits.TEXT:
+    if kind not in BINARY and size <= limits.TEXT and _come_to(path, kind) <= limits.CELLS_HERE:
         return _signals(path, kind)
     frame, told = frame_apart(path, f'{__name__}:write_signals', kind=kind)
     programs = {one.program: one for one in (*FORMATS, ADAPTER, RECORDER)}
     return Signals(frame=frame, **{**told, 'program': programs.get(told['program'])})
+
+
+def _come_to(path: Path, kind: str) -> int:
+    """Return what cells of JSON or XML come to at most [byte]: a few names may be of many rows."""
+    if kind not in NAMES_OF_CELLS:
+        return 0
+    text = path.read_bytes()
+    names = {match[1] for match in NAMES_OF_CELLS[kind].finditer(text)}
+    records, cells = text.count(b'{' if kind == 'json' else b'rec'), text.count(b',')
+    return len(names) * max(records * limits.RECORD_CELL, cells * limits.NUMBER_CELL)
 
 
 def write_signals(inputs: Mapping[str, str]) -> dict[str, Any]:
@@ -222,6 +240,7 @@ def _json(path: Path) -> Signals:
                 period=period,
                 unclear_period=unclear,
                 left_out=dict.fromkeys(sorted(nested), OF_LISTS),
+                arrays=_lengths(lists),
             )
         chosen = max(records, key=lambda name: json_layouts.motion_of(lists[name]))
         content = json_layouts.plain_table(lists[chosen])
@@ -249,7 +268,9 @@ def _of_records(
 ) -> pl.DataFrame:
     """Return records as rows, with a column for each name that one of them holds."""
     names = {name: None for record in records for name in record if name not in without}
-    check_room(len(records), len(names))
+    check_room(len(records), len(names), limits.RECORD_CELL)
+    if len(names) > limits.COLUMNS:
+        raise Unreadable(f'it has {len(names)} columns, allowed are {limits.COLUMNS}')
     return pl.from_dicts(
         [{name: record.get(name) for name in names} for record in records] if without else records,
         infer_schema_length=None,
@@ -262,14 +283,14 @@ def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
     return len(others) if held[0] and held[0] <= held[1] else 0
 
 
-def _period_beside(content: Mapping[str, Any], lists: Iterable[str]) -> tuple[float, str]:
+def _period_beside(content: Mapping[str, Any], lists: Mapping[str, Any]) -> tuple[float, str]:
     """Return the period [s] that a number beside lists states, and what may be one if unclear."""
     stated = json_layouts.stated_periods(content)
     numbers = {key: one for key, one in content.items() if isinstance(one, int | float)}
     periods = stated | _periods(numbers)
     others = _of_other_rows(numbers)
     told = ', '.join(f'{name} = {numbers[name]:g}' for name in [*periods, *others])
-    if others:
+    if others or _are_uneven(lists):
         period = math.nan
     elif len(periods) == 1 and stated:
         (period,) = stated.values()
@@ -315,8 +336,7 @@ def _stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[st
 
 def _factor(label: str) -> str:
     """Return the word of a label for what scales or shifts the values, empty for any other."""
-    match = FACTOR.search(label.lower().replace('_', ' '))
-    return match[1] if match else 'cal' if label.lower() == 'cal' else ''
+    return 'cal' if label.lower() == 'cal' else factor_word(label.replace('_', ' '))
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
@@ -384,6 +404,8 @@ def _xml(path: Path) -> Signals:
             start = start or held.get('startTime', '')
         elif tag == 'rec':
             rows.append(dict(held))
+    if not rows:
+        raise TypeError
     counts = Counter(keys.values())
     names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
     frame = _of_records(rows).rename(names, strict=False)
@@ -447,7 +469,8 @@ def _hdf(path: Path) -> Signals:
             for field in item.dtype.names or ():
                 found[f'{called}.{field}'] = np.squeeze(item[field])
             if not item.dtype.names:
-                unit = item.attrs.get('unit', item.attrs.get('units', b''))
+                units = np.ravel(item.attrs.get('unit', item.attrs.get('units', b'')))
+                unit = units[0] if units.size else ''
                 told = unit.decode() if isinstance(unit, bytes) else str(unit)
                 found[f'{called} [{told}]' if told else called] = _scaled(item)
                 factors.extend(_unclear_factors(called, item.attrs))
@@ -508,13 +531,15 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
     scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
     others = _of_other_rows(scalars)
     told = ', '.join(f'{name} = {float(content[name]):g}' for name in [*periods, *others])
-    period = math.nan if others else _period_of_rows(periods, held)
+    unknown = others or _are_uneven(held)
+    period = math.nan if unknown else _period_of_rows(periods, held)
     return Signals(
         frame=_side_by_side(held, np.float64),
         period=period,
         factors=', '.join(_stated_factors(scalars)),
         unclear_period=told if math.isnan(period) else '',
         left_out=left_out,
+        arrays=_lengths(held),
     )
 
 
@@ -527,6 +552,15 @@ def _period_of_rows(periods: Mapping[str, float], arrays: Iterable[str]) -> floa
     beside = all(one.rpartition('.')[0] == group for one in arrays)
     plain = last.lower() not in DOUBTFUL
     return period if beside and plain and period <= LONGEST_PERIOD else math.nan
+
+
+def _lengths(columns: Mapping[str, Any]) -> dict[str, int]:
+    return {name: len(column) for name, column in columns.items()}
+
+
+def _are_uneven(columns: Mapping[str, Any]) -> bool:
+    """Return True if quantities are of several lengths: a period is that of one of them alone."""
+    return len({len(column) for name, column in columns.items() if read_name(name).kind}) > 1
 
 
 def _side_by_side(columns: Mapping[str, Any], kind: Any = None) -> pl.DataFrame:
@@ -602,14 +636,18 @@ def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None])
             'with a column of the time'
         )
     if not clocks:
-        return Signals(frame=_side_by_side(held))
+        return Signals(frame=_side_by_side(held), arrays=_lengths(held))
     first = min(clocks, key=lambda wave: _begin(wave))
     start = '' if first.start is None else str(first.start + np.timedelta64(first.offset, 'ns'))
     if len(clocks) == 1:
         unclear = f'{told}, none of {listed(bare)}' if bare else ''
         period = math.nan if bare else first.step
         return Signals(
-            frame=_side_by_side(held), period=period, unclear_period=unclear, start=start
+            frame=_side_by_side(held),
+            period=period,
+            unclear_period=unclear,
+            start=start,
+            arrays=_lengths(held) if bare else {},
         )
     columns: dict[str, Any] = {}
     for wave in clocks:

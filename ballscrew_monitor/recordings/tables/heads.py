@@ -65,12 +65,13 @@ BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I
 """A factor of a time, where a row of factors says no more."""
 USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
 LONGEST_GAP = 100.0  # times the usual step, after the first time of a table
-FACTOR = re.compile(
+_FACTOR = (
     r'(scale|scaling|factor|gain|offset|faktor|skalierung|multiplier|resolution|slope|sensitivity|'
     r'calibration|conversion|lsb|decimals|exponent|kalibrierung|umrechnung|auflösung|wertigkeit|'
-    r'empfindlichkeit|(?:scaling|polynomial) coefficient)s?\W*$'
+    r'empfindlichkeit|(?:scaling|polynomial) coefficient)s?'
 )
-"""Words of what scales or shifts the cells, at the end of a label."""
+FACTOR, FACTOR_WITHIN = re.compile(rf'{_FACTOR}\W*$'), re.compile(rf'\b{_FACTOR}\b')
+"""Words of what scales or shifts the cells, at the end of a label and anywhere in it."""
 TIMES = re.compile(r'\b(?:values?|raw) ?[x×*/] ?\d', re.I)
 """A factor that a sentence states."""
 COUNTED = re.compile(
@@ -150,6 +151,21 @@ class Head:
     def surplus(self, row: int, cells: int) -> str:
         """Return what is wrong with a row of more cells than there are columns."""
         return _surplus(row, cells, len(self.names), self.separator)
+
+
+def factor_word(label: str, names: Iterable[str] = ()) -> str:
+    """
+    Return the word of a label for what scales or shifts the cells, empty for any other label.
+
+    It ends the label, or stands in one that names a quantity or one of the columns as well.
+
+    """
+    text, columns = label.lower(), {BRACKETS.sub('', name).strip().lower() for name in names}
+    match = FACTOR.search(text)
+    if match is None and (within := FACTOR_WITHIN.search(text)):
+        named = any(re.search(rf'(?<!\w){re.escape(one)}(?!\w)', text) for one in columns - {''})
+        match = within if named or read_name(label).kind else None
+    return match[1] if match else ''
 
 
 def are_other_names(
@@ -380,6 +396,23 @@ def _check_unit(name: str, below: str) -> None:
         )
 
 
+def _lacks_unit(name: str, unit: str) -> bool:
+    """
+    Return True if a cell of a row of units is to stand behind a name.
+
+    The brackets of the name must hold no unit; a letter there that names a unit of another
+    quantity is taken for an axis. An unknown unit is kept, lest the usual one be assumed.
+
+    """
+    kind = read_name(BRACKETS.sub(' ', name)).kind or read_name(name).kind
+    held = any(
+        is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
+        for text in BRACKETS.findall(name)
+    )
+    unknown = kind not in ('', 'time') and any(map(str.isalpha, unit))
+    return not held and (is_unit(unit) or unknown)
+
+
 def _joined(name: str, below: str) -> str:
     bare = is_unit(below) and below[0] not in '[('
     return f'{name} [{below}]' if bare else f'{name} {below}'.strip()
@@ -427,7 +460,7 @@ class _Above:
         for name, unit in zip(names, units, strict=False):
             _check_unit(name, unit)
         told = unlike(
-            f'{name} [{unit}]' if is_unit(unit) and not BRACKETS.search(name) else name or unnamed
+            f'{name} [{unit}]' if _lacks_unit(name, unit) else name or unnamed
             for name, unit, unnamed in zip(
                 names, units, (UNNAMED.format(at + 1) for at in range(self.width)), strict=True
             )
@@ -456,23 +489,23 @@ class _Above:
             period_row=row,
             unclear_period=unclear,
             machine=self._machine(),
-            factors=self._factors(),
+            factors=self._factors(names),
         )
 
-    def _factors(self) -> str:
+    def _factors(self, names: Sequence[str]) -> str:
         """Return the first row that states a scale other than 1, or an offset other than 0."""
         begin = self.block.begin
         first = self.block.rows[begin:][:FOLLOWING]
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
             key, sign, value = re.sub(r'[\[(].*?[\])]', '', label).replace('=', ':').partition(':')
-            match = None if property_of(label) else FACTOR.search(key.lower())
+            word = '' if property_of(label) else factor_word(key, names)
             numbers = [value.split()[0]] if sign and value.split() else cells
             numbers = [
                 one for one in numbers if NUMBER.fullmatch(one) and any(map(str.isdigit, one))
             ]
-            usual = 1.0 if match and match[1] != 'offset' else 0.0
-            if match and any(_number(one) != usual for one in numbers):
+            usual = 0.0 if word == 'offset' else 1.0
+            if word and any(_number(one) != usual for one in numbers):
                 return ' '.join(filter(None, row))
             if TIMES.search(label):
                 return label

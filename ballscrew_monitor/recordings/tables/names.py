@@ -133,6 +133,8 @@ BARS = re.compile(r'\|[^|]+\|')
 WITH_SIGN = ('speed', 'position', 'load')
 """Words and bars of a column without the sign or of twice the way, and what is nothing so."""
 PERCENT = frozenset({'percent', 'pct'})
+OF_RATED = re.compile(r'%|‰|per ?mille?|promille|percent|prozent|rated', re.I)
+"""Units of parts of a rated torque or current."""
 TELLS_NOTHING = (
     MEASURED
     | WANTED
@@ -495,10 +497,18 @@ def unknown_units(named: Sequence[Named]) -> list[str]:
         f'column {short(repr(one.column))} is in '
         f'{short(unknown_unit(one.column, one.doubtful))}, which is no unit of a '
         f'{one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
-        f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
+        f'{_unit_of_map(one)}` in the map, what one of it is'
         for one in named
         if one.doubtful in INPUTS and one.place in ('axis', 'machine')
     ]
+
+
+def _unit_of_map(one: Named) -> str:
+    """Return the unit that a map states of a column in an unknown one, and what belongs to it."""
+    units = UNITS[one.doubtful]
+    if RATED in units and OF_RATED.search(unknown_unit(one.column, one.doubtful)):
+        return f"'{RATED}', scale: ...}}, torque_rated_Nm: ..."
+    return f'{next(iter(units))}, scale: ...}}'
 
 
 def told_by_words(named: Sequence[Named]) -> list[str]:

@@ -110,9 +110,10 @@ class Source:
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
     is one `sheet`. `left_out` says why other sheets or arrays are not read, `more_rows` of which
-    are of the same columns, `lengths` how many cells columns of groups hold; `notes` say what is
-    odd about it. Names of a source that `is_grouped` begin with that of a group. `short` are
-    the rows of too few cells since it began.
+    are of the same columns, `lengths` how many cells columns of groups hold, `arrays` how many
+    those whose rows nothing but a time ties to others; `notes` say what is odd about it. Names of
+    a source that `is_grouped` begin with that of a group. `short` are the rows of too few cells
+    since it began.
 
     """
 
@@ -125,6 +126,7 @@ class Source:
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
     lengths: Mapping[str, int] = dataclasses.field(default_factory=dict)
+    arrays: Mapping[str, int | None] = dataclasses.field(default_factory=dict)
     notes: tuple[str, ...] = ()
     is_grouped: bool = False
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
@@ -182,6 +184,16 @@ class Source:
         names = {name.removeprefix(f'{_group_of(name)}.') for name in columns}
         others = [held for group, held in groups.items() if group not in read]
         return self.more_rows + sum(max(one.values()) for one in others if names <= one.keys())
+
+    def fault_of_length(self, column: str, time: str) -> str:
+        """Return how a column is of another length than that of its time, empty if it is not."""
+        count, rows = map(self.arrays.get, (column, time))
+        if not count or not rows or count == rows:
+            return ''
+        return (
+            f'column {short(repr(column))} holds {count} values and {short(repr(time))} {rows}, '
+            'so that its samples are not at the same times'
+        )
 
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
@@ -248,6 +260,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
             more_rows=signals.more_rows,
             is_grouped=is_grouped,
             lengths=dict(zip(source.names(), lengths, strict=True)) if is_grouped else {},
+            arrays=dict(zip(source.names(), map(signals.arrays.get, frame.columns), strict=True)),
             short=ShortRows(count=len(empty), first=empty[0]) if empty else ShortRows(),
         )
         texts = frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
@@ -257,14 +270,22 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
 
 
 def is_log(path: Path) -> bool:
-    """Return True if a file begins with rows of numbers or signals, whatever its ending."""
+    """
+    Return True if a file begins with rows of numbers or signals, whatever its ending.
+
+    JSON and XML are read, but a large or packed text is judged by the numbers that it begins with.
+
+    """
     with contextlib.suppress(InputError):
         head = _head_of(path, limits.MEGA)
-        if head.startswith(codings.GZIP):
+        is_packed = head.startswith(codings.GZIP)
+        if is_packed:
             head = codings.unpacked(path, limits.MEGA)
         if head.startswith((PARQUET, ZIP)):
             return head.startswith(PARQUET)
         if kind := foreign.kind_of(head[:HEAD]):
+            if kind in ('json', 'xml') and not is_packed and path.stat().st_size <= limits.TEXT:
+                return bool(foreign.read_signals(path, kind).frame.width)
             return foreign.holds_numbers(head, kind, FEWEST)
         if codings.wide_coding(head):
             head = decoded(head).encode()

@@ -119,6 +119,10 @@ class OwnTimes:
         draft, place = self._draft, self._draft.used[name][kind]
         column, time = place['column'], str(self._time.stated.get('column', ''))
         own = self.of_inputs.get(column, time)
+        first = draft.used[name].get('speed') or draft.used[name].get('position', place)
+        if fault := self._log.source.fault_of_length(column, own or first['column']):
+            draft.ask(f'{name}.{kind}.time', f', a column of the length of {column}: {fault}')
+            return
         if own != time:
             place['time'] = own
         if self._idle:

@@ -211,8 +211,15 @@ class TimeColumn:
         begin, where, place = start.known, f'from line {start.row}', HEADER
         if begin is None:
             place = NAME
-            for moment, of in dates_by_name(self._log.path):
-                if begin is None and moment is not None and moment.year >= FIRST_YEAR:
+            for moment, text, of in dates_by_name(self._log.path):
+                if moment is None:
+                    why = (
+                        f'{why}, and the date {text} in the name of the {of} may be of either '
+                        'order of day and month: date_from: name with time: {order: dmy} or mdy '
+                        'dates it'
+                    )
+                    break
+                if begin is None and moment.year >= FIRST_YEAR:
                     begin, where = moment.timestamp(), f'from the name of the {of}'
         if begin is None and start.moments:
             why = (

@@ -7,6 +7,7 @@ import os
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.dates import date_in_head, date_in_name
+from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from hypothesis import given
@@ -30,6 +31,7 @@ def content(**changes):
 
 
 def write(path, head=''):
+    path.parent.mkdir(exist_ok=True)
     path.write_text(head + 't,v\n' + ''.join(f'{0.1 * n:.1f},{5 + n % 2}\n' for n in range(100)))
     return path
 
@@ -51,9 +53,10 @@ def test_a_name_dates_a_log(day, around):
 def test_any_moment_is_read_as_it_was_written(moment, day, time):
     moment = moment.replace(microsecond=0, tzinfo=datetime.UTC)
     name = f'log_{moment.strftime(day + time)}'
-    assert date_in_name(name) == datetime.datetime.strptime(name, f'log_{day}{time}').replace(
-        tzinfo=datetime.UTC
-    )
+    written = datetime.datetime.strptime(name, f'log_{day}{time}').replace(tzinfo=datetime.UTC)
+    either = day == '%d-%m-%Y' and moment.day <= 12 and moment.day != moment.month
+    assert date_in_name(name) == (None if either else written)
+    assert date_in_name(name, 'dmy') == written
 
 
 @pytest.mark.parametrize(
@@ -62,6 +65,26 @@ def test_any_moment_is_read_as_it_was_written(moment, day, time):
 )
 def test_a_name_without_a_date_has_none(name):
     assert date_in_name(name) is None
+
+
+@pytest.mark.parametrize('name', ['03-06-2024', 'x_03_06_2024', '03-06-2024_10-15-00'])
+def test_a_name_of_either_order_dates_a_log_by_that_of_the_map(name, tmp_path, refused, says):
+    log = write(tmp_path / '2025-07-14' / f'{name}.csv')
+    mapping = content(date_from='name')
+    with refused('either_name', log=log, date=name.removeprefix('x_')):
+        TableLog(log, make_map(mapping))
+    for order, day in (('dmy', (2024, 6, 3)), ('mdy', (2024, 3, 6))):
+        mapping['time']['order'] = order
+        assert begin_of(log, mapping).date() == datetime.date(*day)
+    log.write_text(log.read_text().replace('t,v', 't [s],X speed [mm/s]'))
+    epoch = guess(log).content['assumed']['time.epoch']
+    assert epoch['value'].startswith('2000')
+    assert says('either_date', date=name.removeprefix('x_')) in epoch['reason']
+
+
+@pytest.mark.parametrize('name', ['03.06.2024', '20240603', '2024-06-03', '2024_06_03'])
+def test_a_date_with_dots_has_the_day_first_and_one_with_the_year_first_the_month(name):
+    assert date_in_name(name).date() == datetime.date(2024, 6, 3)
 
 
 def test_two_logs_of_a_day_with_a_number_have_one_date():

@@ -195,6 +195,15 @@ def test_attributes_of_a_dataset_scale_it_by_the_conventions_or_are_named(
     np.testing.assert_array_equal(signals.frame['v'], expected)
 
 
+@pytest.mark.parametrize('unit', ['N', b'N', ['N'], np.array([b'N']), np.array([['N']], object)])
+def test_a_unit_of_a_dataset_may_be_an_array_of_one(unit, tmp_path):
+    path = tmp_path / 'log.h5'
+    with h5py.File(path, 'w') as file:
+        file['force'] = SPEED
+        file['force'].attrs['units'] = unit
+    assert foreign.read_signals(path, 'hdf').frame.columns == ['force [N]']
+
+
 def test_values_on_change_stand_still_between(tmp_path):
     path = tmp_path / 'mill.shdr'
     lines = [f'2025-07-14T11:59:{50 + row / 10:06.3f}Z|Xact|{row}' for row in range(40)]
@@ -228,6 +237,7 @@ def test_a_reader_that_is_not_installed_is_named(
     [
         (b'[1, {"a": 2}]', 'no_json'),
         (b'{"Header": 3, "a": [{"b": 1}, 3]}', 'no_json'),
+        (b'<tools><tool id="0" length="1.5"/></tools>', 'no_xml'),
         (b'MATLAB 5.0' + bytes(200), 'no_mat'),
         (b'\x89HDF\r\n\x1a\n' + bytes(200), 'no_hdf'),
     ],
@@ -286,6 +296,45 @@ def test_groups_of_arrays_that_are_not_read_are_named(later, tmp_path, says):
             'pictures': says('array'),
             'words': says('no_numbers'),
         }
+
+
+RECORDS = {
+    'log.json': lambda names: json.dumps([{name: 1.5} for name in names]),
+    'log.xml': lambda names: '<t>' + ''.join(f'<rec {name}="1.5"/>' for name in names) + '</t>',
+}
+
+
+@pytest.mark.parametrize('name', RECORDS)
+@pytest.mark.parametrize('count', [100, 101])
+def test_records_of_many_names_are_read_by_a_process_of_its_own(
+    name, count, tmp_path, monkeypatch
+):
+    path, tasks, result = tmp_path / name, [], apart.result_apart
+    path.write_text(RECORDS[name]([f'a{at}' for at in range(count)]))
+
+    def counted(task, inputs, **options):
+        tasks.append(task)
+        return result(task, inputs, **options)
+
+    monkeypatch.setattr(apart, 'result_apart', counted)
+    monkeypatch.setattr(foreign.limits, 'CELLS_HERE', 100 * 100 * 64)
+    assert foreign.read_signals(path, name[4:]).frame.shape == (count, count)
+    assert bool(tasks) is (count > 100)
+
+
+@pytest.mark.parametrize('name', RECORDS)
+@pytest.mark.parametrize(
+    ('key', 'limit', 'most'),
+    [('records_room', 'SPARSE', 20 * 20 * 64 - 1), ('records_wide', 'COLUMNS', 19)],
+)
+def test_records_are_counted_before_they_are_cells(
+    name, key, limit, most, tmp_path, monkeypatch, refused
+):
+    path = tmp_path / name
+    path.write_text(RECORDS[name]([f'a{at}' for at in range(20)]))
+    monkeypatch.setattr(pl, 'from_dicts', None)
+    monkeypatch.setattr(foreign.limits, limit, most)
+    refused(key, foreign.read_signals, path, name[4:])
 
 
 @pytest.mark.parametrize('name', ['trace.json', 'log.mat'])
@@ -546,6 +595,48 @@ def test_json_that_nests_deeply_is_refused_before_it_is_a_table(tmp_path, refuse
     deep = '[' * 900 + ']' * 900
     path.write_text('[' + ','.join([f'{{"t": 0.0, "x speed": {deep}}}'] * 3) + ']')
     refused('deep_records', guess, path)
+
+
+def of_arrays(kind, path, arrays):
+    if kind == 'mat':
+        scipy.io.savemat(path, arrays)
+    elif kind == 'json':
+        path.write_text(
+            json.dumps({name: np.asarray(one).tolist() for name, one in arrays.items()})
+        )
+    else:
+        with h5py.File(path, 'w') as file:
+            for name, values in arrays.items():
+                file[name] = values
+
+
+@pytest.mark.parametrize('kind', ['mat', 'h5', 'json'])
+@pytest.mark.parametrize('time', [{'time_s': TIME}, {'dt': STEP}, {}])
+@pytest.mark.parametrize('count', [COUNT // 2, COUNT - 1, 2 * COUNT])
+def test_an_array_of_another_length_than_its_time_has_no_known_time(
+    kind, time, count, tmp_path, says, refused
+):
+    path = tmp_path / f'log.{kind}'
+    arrays = {'x_vel_mm_s': SPEED, 'x_force_N': 50.0 * np.cos(np.arange(count))}
+    of_arrays(kind, path, time | arrays)
+    made = guess(path)
+    beside = 'time_s' if 'time_s' in time else 'x_vel_mm_s'
+    assert made.content['axes']['x']['load']['time'] is None
+    expected = says('uneven_arrays', count=count, beside=beside)
+    assert any(one.endswith(expected) for one in made.unstated)
+    if 'time_s' not in time:
+        assert made.content['time'] == {'rate_Hz': None}
+    content = made.content | ({} if 'time_s' in time else {'time': {'rate_Hz': 500.0}})
+    del content['axes']['x']['load']['time']
+    with refused('uneven_columns', count=count, beside=beside):
+        read_series(path, make_map(content))
+
+
+def test_an_array_that_is_no_signal_does_not_hide_the_rate(tmp_path):
+    path = tmp_path / 'log.mat'
+    arrays = {'x_vel_mm_s': SPEED, 'x_force_N': SPEED, 'table': np.arange(5.0), 'dt': STEP}
+    scipy.io.savemat(path, arrays)
+    assert guess(path).content['time'] == {'rate_Hz': 500.0}
 
 
 START = np.datetime64('2025-07-14T11:59:50.250')

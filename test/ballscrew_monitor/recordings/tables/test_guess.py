@@ -673,6 +673,12 @@ def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
     refused('unit_furlong', guessed, {'t_s': TIME, 'x vel [furlong/h]': SPEED})
 
 
+@pytest.mark.parametrize('unit', ['‰', '0.1%', '% of rated', 'per mille'])
+def test_a_part_of_a_rated_torque_is_offered_as_one_of_its_per_cent(unit, guessed, says):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, f'x torque [{unit}]': SPEED})
+    assert says('unit_rated', unit=unit) in made.notes
+
+
 @pytest.mark.parametrize(
     ('name', 'kind', 'unit'), [('x torque [A]', 'current', 'A'), ('Effort X [N]', 'load', 'N')]
 )

@@ -74,6 +74,27 @@ def test_a_name_and_the_row_of_units_that_contradict_it_are_refused(name, cell, 
     assert cell in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ('name', 'cell', 'called'),
+    [
+        ('Drehzahl (X)', 'rpm', 'Drehzahl (X) [rpm]'),
+        ('Drehzahl (ist)', 'rpm', 'Drehzahl (ist) [rpm]'),
+        ('Drehzahl (Achse 1)', '1/s', 'Drehzahl (Achse 1) [1/s]'),
+        ('Position (A)', 'inch', 'Position (A) [inch]'),
+        ('Position (C)', 'inch', 'Position (C) [inch]'),
+        ('Strom (A)', 'A', 'Strom (A)'),
+        ('Position [mm]', 'mm', 'Position [mm]'),
+        ('Drehzahl', '1/s', 'Drehzahl [1/s]'),
+        ('Nut temperature (X)', '°F', 'Nut temperature (X) [°F]'),
+        ('Nut temperature', '-', 'Nut temperature'),
+        ('Programm (alt)', 'REAL', 'Programm (alt)'),
+    ],
+)
+def test_a_unit_below_a_name_is_that_of_its_column(name, cell, called):
+    text = f't;{name};F\ns;{cell};N\n' + 9 * '0;1;2\n'
+    assert head_of(text).names == ('t [s]', called, 'F [N]')
+
+
 @given(strategies.lists(strategies.text(max_size=20), max_size=9))
 def test_whatever_the_lines_are_there_is_a_head_within_them_or_none(lines):
     try:
@@ -175,6 +196,11 @@ def test_rows_of_periods_and_rates_of_columns_agree_or_state_none(rows, period):
         ('v resolution: 2 mm/s\nt;v;F\n', 'v resolution: 2 mm/s'),
         ('All values x 2\nt;v;F\n', 'All values x 2'),
         ('Scaling: v = raw / 10\nt;v;F\n', 'Scaling: v = raw / 10'),
+        ('Gain X force: 2.5\nt;v;F\n', 'Gain X force: 2.5'),
+        ('Gain of v: 2\nt;v;F\n', 'Gain of v: 2'),
+        ('Conversion factor X Force [N/V]: 200\nt;v;F\n', 'Conversion factor X Force [N/V]: 200'),
+        ('Gain X force: 1.0\nt;v;F\n', ''),
+        ('Offset table: 5\nt;v;F\n', ''),
         ('Multiplier: 1.0\nt;v;F\n', ''),
         ('Name;v;F\nScaleFactor;1;1\nOffset;0;0.0\n', ''),
         ('Name;v;F\nGain;1.0E+00;1.0E+00\nOffset;0.0E+00;0.0E+00\n', ''),

@@ -138,6 +138,7 @@ def layout(draw):
         'second time': draw.choice(['as the first', 'as the first', 'unnamed']),
         'factors': draw.random() < 0.1,
         'unit in words': draw.random() < 0.2,
+        'note': draw.choice(['', ' (X)', ' (ist)', ' (Achse 1)']),
     }
 
 
@@ -227,7 +228,8 @@ def written(made):
     heads = [names]
     if made['units below']:
         split = [each.partition(' [') for each in names]
-        heads = [[each for each, *_ in split], [unit.strip(']') for *_, unit in split]]
+        noted = [f'{each}{made["note"] * bool(unit)}' for each, _, unit in split]
+        heads = [noted, [unit.strip(']') for *_, unit in split]]
     elif made['unit in words']:
         heads = [[re.sub(r' \[(.*)\]$', r' in \1', each) for each in names]]
     if made['factors'] and not in_lines:

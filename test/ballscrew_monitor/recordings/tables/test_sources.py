@@ -4,6 +4,7 @@
 
 import gzip
 import io
+import json
 import zipfile
 
 from ballscrew_monitor.recordings.tables import codings, foreign, sources
@@ -224,15 +225,37 @@ HEADS = {
 @pytest.mark.parametrize('kind', HEADS)
 @pytest.mark.parametrize('packed', [False, True])
 def test_the_begin_of_a_file_tells_whether_it_is_a_log(kind, packed, tmp_path, monkeypatch):
-    """No reader of signals is called, and of a text or a packed file the rest is not read."""
+    """Of a text, a packed or a large file the rest is not read."""
     head, holds = HEADS[kind]
     path = tmp_path / 'log.rec'
     rest = bytes(range(1, 256)) * 9000  # which is neither, nor may it be packed much
     monkeypatch.setattr(foreign, 'read_signals', None)
+    monkeypatch.setattr(limits, 'TEXT', 0)
     monkeypatch.setattr(limits, 'MEGA', max(len(head), 512) // 64 * 64)
     content = gzip.compress(head + rest)[:-2000] if packed else head + rest
     path.write_bytes(content)
     monkeypatch.setattr(codings, 'decoded', None)
+    assert sources.is_log(path) is holds
+
+
+PLACES = [[at * 1.5, at * 2] for at in range(40)]
+SMALL = {
+    'coefficients': (json.dumps({'name': 'cal', 'table': PLACES, 'limits': {'a': 1}}), False),
+    'settings': (json.dumps({f'setting {at}': at for at in range(40)}), False),
+    'tools': ('<tools>' + '<tool length="1.5"/>' * 40 + '</tools>', False),
+    'trace': ('<trace>' + '<rec time="0.5" f1="1.5"/>' * 40 + '</trace>', True),
+    'late': (
+        json.dumps({'note': 'x' * limits.MEGA, 'samples': [{'t': t, 'v': v} for t, v in PLACES]}),
+        True,
+    ),
+}
+
+
+@pytest.mark.parametrize('name', SMALL)
+def test_json_and_xml_are_logs_if_they_hold_signals(name, tmp_path):
+    content, holds = SMALL[name]
+    path = tmp_path / 'log.rec'
+    path.write_text(content)
     assert sources.is_log(path) is holds
 
 
