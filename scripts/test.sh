@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The checks, the size of the sources, then the tests, whose closing line comes last. Arguments are for pytest.
-# A worker for each of the two cores of the smallest machine that this is for: a third one gains little
-# and lets nodes and listeners wait for each other. Each has its share of the files until it helps the
-# other. `-n 0` runs all in one process. What ament_flake8 and ament_pep257 find, ruff finds in a
+# Three workers for the two cores of the smallest machine that this is for: a quarter of the time of a
+# worker is waiting, for discovery and for children. Each has its share of the files until it helps
+# the others. `-n 0` runs all in one process. What ament_flake8 and ament_pep257 find, ruff finds in a
 # hundredth of the time; they run on machines with ROS 2, and by `-m linter` here.
 set -u
 cd "$(dirname "$0")/.."
@@ -29,7 +29,7 @@ check ruff format --check --quiet --output-format concise
 [ -z "$failed" ] || echo "== failed:$failed"
 echo '== size'
 .venv/bin/python scripts/count.py --summary
-.venv/bin/pytest -q -n 2 --dist worksteal -m 'not flake8 and not pep257' "$@"
+.venv/bin/pytest -q -n 3 --dist worksteal -m 'not flake8 and not pep257' "$@"
 code=$?
 [ $code != 0 ] || [ -z "$failed" ] || code=1
 exit $code
