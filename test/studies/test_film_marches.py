@@ -66,6 +66,15 @@ def test_every_case_and_every_own_screw_has_a_sheet(marches):
 
 
 @pytest.mark.parametrize(
+    ('lay', 'rms'), [('isotropic', 0.15), ('longitudinal', 0.10), ('transverse', 0.15)]
+)
+def test_the_law_tells_the_film_of_designed_marches_held_out_from_its_fit(marches, rows, lay, rms):
+    held = [row for row in rows.values() if (row.role, row.lay) == ('held out', lay)]
+    off = np.log([marches.told_over_marched(row) for row in held])
+    assert math.sqrt(np.mean(off**2)) < rms
+
+
+@pytest.mark.parametrize(
     ('lay', 'strips', 'raceways', 'rms'),
     [('isotropic', 33, 12, 0.11), ('longitudinal', 40, 13, 0.21), ('transverse', 18, 6, 0.12)],
 )
