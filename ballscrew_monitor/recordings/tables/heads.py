@@ -404,7 +404,7 @@ def _lacks_unit(name: str, unit: str) -> bool:
     quantity is taken for an axis. An unknown unit is kept, lest the usual one be assumed.
 
     """
-    kind = read_name(BRACKETS.sub(' ', name)).kind or read_name(name).kind
+    kind = _kind_of(name)
     held = any(
         is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
         for text in BRACKETS.findall(name)
@@ -769,8 +769,13 @@ def _key_and_value(line: Line, separator: str) -> tuple[str, str]:
     return '', ''
 
 
+def _kind_of(name: str) -> str:
+    """Return the kind of quantity of a name, whatever its brackets hold."""
+    return read_name(BRACKETS.sub(' ', name)).kind or read_name(name).kind
+
+
 def _known(row: Sequence[str]) -> int:
-    return sum(bool(read_name(cell).kind) for cell in row)
+    return sum(bool(_kind_of(cell)) for cell in row)
 
 
 def _is_of_numbers(row: Sequence[str]) -> bool:

@@ -401,3 +401,13 @@ def test_a_period_in_plain_words_of_rows_is_read(line, tmp_path):
     rows = ''.join(f'{at % 7 - 3};{at % 5 - 2};{20 + at % 3}\n' for at in range(40))
     log.write_text(f'{line}\nx velocity [mm/s];x force [N];oil temperature [degC]\n{rows}')
     assert guess(log).content['time']['rate_Hz'] == 100.0
+
+
+@pytest.mark.parametrize('note', ['', ' (Achse 1)', ' (X)', ' (ist)'])
+def test_a_row_of_factors_is_asked_for_whatever_stands_behind_the_names(note, tmp_path):
+    names = ';'.join(f'{name}{note}' for name in ('Time', 'X position', 'X force'))
+    rows = [f'{0.1 * row:.1f};{150 + row};{20 + row}'.replace('.', ',') for row in range(60)]
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join([names, 's;mm;N', '1;0,5;1', *rows]))
+    axis = guess(path).content['axes']['x']
+    assert [axis[name]['scale'] for name in ('position', 'load')] == [None, None]
