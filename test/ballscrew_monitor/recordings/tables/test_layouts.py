@@ -26,7 +26,7 @@ from surrogate.files import InputError
 BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
 ROWS = 60
 DRAWN = 40
-EACH = 250 if settings.default.max_examples >= 1000 else 30  # eight parts: 2000 of `make fuzz`
+EACH = 250 if settings.default.max_examples >= 1000 else 60  # eight parts: 2000 of `make fuzz`
 DAY = 86400.0
 
 
