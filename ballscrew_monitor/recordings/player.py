@@ -62,6 +62,7 @@ DATA_QOS = QoSProfile(
 DIAGNOSTICS, PART = '/diagnostics', ': Inputs'
 TAKEN, LOST, MATCHED = ' received [-]', ' lost [-]', ' publishers [-]'
 FRESH = ('Speed state', 'OK')
+DISCOVERY = 0.5  # [s] from one end of a node that is known to the others
 FIRST_WORD, LAST_WORD = 2.0, 5.0  # [s] that a monitor may take to tell what it has taken
 POLL = 0.05  # [s]
 DEPTH = 1000  # messages of monitors that may wait
@@ -231,12 +232,14 @@ class Following:
         """
         Wait a little for what the monitors have taken before, and until they know the player.
 
-        Without a monitor it does not wait.
+        A subscriber may be known before what its node publishes: only where no monitor is known
+        after a moment there is none.
 
         """
-        deadline = time.monotonic() + FIRST_WORD
-        while (not self._first or self._unmatched) and time.monotonic() < deadline:
-            if not self._node.count_publishers(DIAGNOSTICS):
+        begin = time.monotonic()
+        deadline = begin + FIRST_WORD
+        while (not self._first or self._unmatched) and (now := time.monotonic()) < deadline:
+            if now > begin + DISCOVERY and not self._node.count_publishers(DIAGNOSTICS):
                 break
             self._take(POLL)
 

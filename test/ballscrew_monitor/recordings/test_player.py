@@ -13,8 +13,9 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.player import _play, chosen, PAUSE, playable, Player
+from ballscrew_monitor.recordings.player import _play, chosen, Following, PAUSE, playable, Player
 from ballscrew_monitor.settings.parameters import input_topics, read_file
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from mcap.writer import Writer
 import pytest
 import rclpy
@@ -88,7 +89,7 @@ from ballscrew_monitor.cli import main
 from ballscrew_monitor.recordings import player
 from ballscrew_monitor.recordings.player import Player
 
-player.FIRST_WORD = player.LAST_WORD = {DEADLINE}
+player.DISCOVERY = player.FIRST_WORD = player.LAST_WORD = {DEADLINE}
 messages_of = Player._messages
 
 def gated(*args):
@@ -341,6 +342,36 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
     assert err == says('did_not_follow', taken=taken, count=count, source=source)
     assert source in ('speed', 'load')
     assert 0 < int(taken) < int(count)
+
+
+class LateMonitor:
+    """A graph in which the subscribers of a monitor are known before what it publishes."""
+
+    def __init__(self):
+        self.executor, self.looks, self.taken = self, 0, 0
+
+    def create_subscription(self, kind, topic, heard, depth):
+        self.heard = heard
+
+    def count_publishers(self, topic):
+        return self.looks > 3
+
+    def spin_once(self, timeout_sec):
+        self.looks += 1
+        if self.looks > 3:
+            counts = [KeyValue(key='Speed received [-]', value=str(self.taken))]
+            status = DiagnosticStatus(name='ballscrew: x: Inputs', values=counts)
+            self.heard(DiagnosticArray(status=[status]))
+
+
+def test_a_monitor_whose_publisher_is_found_late_is_awaited():
+    graph = LateMonitor()
+    following = Following(graph, {('x', 'speed'): '/joint_states'})
+    following.begin()
+    graph.taken = 7
+    following.settle(-1, lambda rest, most: rest())
+    complaint = following.complaint(10.0, {'/joint_states': 10})
+    assert 'x did not follow at 10x: it took 7 of 10 messages of its speed' in complaint
 
 
 def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
