@@ -18,6 +18,7 @@ from ballscrew_monitor.messages.health_messages import health_status, stamp_of
 from ballscrew_monitor.node.alarm import LatchedTopics
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
+from ballscrew_monitor.node.heartbeat import clock_is_set
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Kind
 from ballscrew_monitor.settings.axis import gathering_of
@@ -32,6 +33,7 @@ LOOK = 1.0  # [s] between two looks
 PERIOD = 30  # looks between two writes of the store
 KEPT_FOR = HOUR  # [s] that a clock must keep a time that it was set to
 CLOCK_SET = 'the clock was set by more than a day, motion counts again after an hour'
+CLOCK_UNSET = 'the clock of the machine is not set, motion counts an hour after it is'
 
 
 class AxisHealths:
@@ -126,7 +128,7 @@ class AxisHealths:
 
     def _status(self, name: str) -> DiagnosticStatus:
         assert self._worker is not None
-        held = CLOCK_SET if self._held else ''
+        held = (CLOCK_SET if clock_is_set(self._node) else CLOCK_UNSET) if self._held else ''
         return health_status(
             self._node.get_fully_qualified_name(),
             name,
@@ -141,7 +143,7 @@ class AxisHealths:
         if self._worker is None:
             return
         self._looks += 1
-        self._held = max(self._held - LOOK, 0.0)
+        self._held = max(self._held - LOOK, 0.0) if clock_is_set(self._node) else KEPT_FOR
         for name in self._gatherers:
             # What could not be had is tried again with the next write.
             longest = PERIOD * LOOK if self._worker.problem else math.inf

@@ -76,6 +76,10 @@ class CompiledTurns:
             self._warned = True
             self._warn(NOT_COMPILED.format(COMPILED_FROM, self._problem))
 
+    def give_up(self, error: Exception) -> None:
+        """Judge interpreted from now on, since compiled code failed."""
+        self._loaded, self._problem = False, f'{type(error).__name__}: {error}'
+
     def find_spec(self, name: str, *place: object) -> None:
         """
         Find no module; the thread that loads waits, before each one, until nothing waits.

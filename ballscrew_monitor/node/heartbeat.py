@@ -42,6 +42,11 @@ MOST_OTHERS = 10  # that are remembered
 MADE = 1_767_225_600 * SECOND  # [ns] begin of 2026: no clock that was set shows an earlier time
 
 
+def clock_is_set(node: Node) -> bool:
+    """Return False where a node reads a clock of the machine that nobody has set."""
+    return node.get_parameter('use_sim_time').value or time.time_ns() >= MADE
+
+
 def own_instance() -> KeyValue:
     """Return what tells this node from every other one: a number by chance, and its host."""
     host = f'{socket.gethostname()} (process {os.getpid()})'
@@ -91,7 +96,7 @@ class Heartbeat:
         step = self._step if now - self._step_at < STEP_SHOWN else 0
         name = self._node.get_fully_qualified_name()
         hosts = [self._instance.value, *self.others]
-        is_set = self._node.get_parameter('use_sim_time').value or time.time_ns() >= MADE
+        is_set = clock_is_set(self._node)
         return [diagnostics.of_node(name, signs, step, hosts, is_clock_set=is_set)]
 
     def set_clock(self, step: int) -> None:

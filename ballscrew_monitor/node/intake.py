@@ -12,7 +12,7 @@ once for all of them. Simulated time is read in the same order: a message arrive
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 import contextlib
 import math
 import operator
@@ -75,6 +75,12 @@ def _forget(*what: Any) -> None:
 
 def _call(axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any) -> Any:
     return call(*args, **named)
+
+
+def system_step(steps: ClockSteps) -> int:
+    """Return by how much [ns] the clock of the machine was set since it was last looked at."""
+    before = time.monotonic_ns()
+    return steps.take(time.time_ns(), before, time.monotonic_ns())
 
 
 class Intake(Waitable):
@@ -326,8 +332,7 @@ class Intake(Waitable):
         """Hand over all that waits, oldest first; return how many messages that was."""
         begin, step = time.monotonic(), 0
         if self._clock is None:  # by how much [ns] the clock of the system was set
-            before = time.monotonic_ns()
-            step = self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
+            step = system_step(self._system_steps)
         at_once = self.is_compiled and self._clock is None and not step
         messages, events = self._drain_at_once() if at_once else self._drain_each(step)
         if messages:
@@ -386,13 +391,7 @@ class Intake(Waitable):
             if self.is_compiled:
                 self._hand_over_burst(Burst.of(heard, self.topics.values()))
             else:
-                turn = ordered([event for one in heard for event in self._judged(one)])
-                self._recorder.hear(heard)
-                self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
-                self._recorder.flush()  # whatever becomes of the node with these events
-                for axis, event in turn:
-                    self._take(axis, event)
-                self._recorder.flush()
+                self._hand_over_each(heard)
             heard.clear()
         if step:
             now = self.now
@@ -401,8 +400,23 @@ class Intake(Waitable):
                 self._guard(axis, 'a step of the clock', axis.monitor.set_clock, now - step, now)
             self._stepped(step, now)
 
+    def _hand_over_each(self, heard: Sequence[Heard]) -> None:
+        turn = ordered([event for one in heard for event in self._judged(one)])
+        self._recorder.hear(heard)
+        self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
+        self._recorder.flush()  # whatever becomes of the node with these events
+        for axis, event in turn:
+            self._take(axis, event)
+        self._recorder.flush()
+
     def _hand_over_burst(self, burst: Burst) -> None:
-        turn = self._turns.turn(burst, self._reading)
+        try:
+            turn = self._turns.turn(burst, self._reading)
+        except Exception as error:  # whatever it is: messages are read one by one, each guarded
+            assert self._compiled is not None
+            self._compiled.give_up(error)
+            self._hand_over_each([burst.heard(at) for at in range(len(burst.now))])
+            return
         if self._recorder.on:
             if self._recorder.raw:
                 self._recorder.hear([burst.heard(at) for at in range(len(burst.now))])

@@ -20,7 +20,7 @@ from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.compiled_turns import CompiledTurns
 from ballscrew_monitor.node.event_recorder import NodeRecorder
 from ballscrew_monitor.node.heartbeat import Heartbeat
-from ballscrew_monitor.node.intake import Intake
+from ballscrew_monitor.node.intake import Intake, system_step
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.printable_log import printable_logger
@@ -325,6 +325,12 @@ class BallscrewMonitor(LifecycleNode):
         """Take what waits, and any step of the clock, before something else than an event."""
         if self._intake is not None:
             self._intake.drain()
+        elif not self.get_parameter('use_sim_time').value and (step := system_step(self._steps)):
+            now = self.get_clock().now().nanoseconds
+            for publisher in self._axis_publishers.values():
+                set_clock = publisher.axis.monitor.set_clock
+                publisher.guarded('a step of the clock', set_clock, now - step, now)
+            self._on_step(step, now)
 
     def _guard(
         self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any

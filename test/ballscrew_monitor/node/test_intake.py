@@ -235,6 +235,18 @@ def test_turns_that_are_judged_compiled_hold_all_in_the_order_of_arrival(bench):
     assert sum(intake.losses) > 0
 
 
+def test_a_turn_that_cannot_be_read_compiled_is_read_message_by_message(bench):
+    intake, failures = AtOnce(bench), []
+    intake.give_up = failures.append
+    bench.intake._take = bench.take
+    bench.intake._turns = types.SimpleNamespace(turn=lambda *_: failures.append(1 / 0))
+    for number in range(20):
+        bench.publish('speed', number)
+    bench.until(lambda: len(bench.taken) == 20)
+    assert [event.value for event in bench.taken] == list(range(20))
+    assert {type(failure) for failure in failures} == {ZeroDivisionError}
+
+
 def test_a_leap_of_simulated_time_ends_a_turn_that_is_judged_compiled(bench, monkeypatch):
     intake, steps, turns = AtOnce(bench), [], []
     bench.axis.monitor = types.SimpleNamespace(set_clock=lambda due, now: steps.append(now - due))

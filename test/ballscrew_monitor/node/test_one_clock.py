@@ -3,16 +3,19 @@
 """Simulated time in one process: ticks and messages go by the same clock, however fast it is."""
 
 import contextlib
+import time
 import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.state import shelve
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages.diagnostics import code_of
-from ballscrew_monitor.node.axis_healths import CLOCK_SET, KEPT_FOR, LOOK
+from ballscrew_monitor.node import axis_healths
+from ballscrew_monitor.node.axis_healths import CLOCK_SET, CLOCK_UNSET, KEPT_FOR, LOOK
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_monitor.settings.qos import started_node
@@ -20,6 +23,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 import pytest
 import rclpy
+from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -162,6 +166,61 @@ def test_health_gathers_nothing_until_the_clock_has_kept_a_new_day(bench, days):
             healths._look()
         play(bench, 1.0, now, 1.0)
         assert rows
+
+
+def test_health_gathers_nothing_while_the_clock_is_not_set(bench, monkeypatch):
+    healths, rows = bench.node._healths, []
+    monkeypatch.setattr(healths._gatherers['x'], 'take', rows.append)
+    monkeypatch.setattr(axis_healths, 'clock_is_set', lambda node: False)
+    healths._look()
+    now = play(bench, 1.0, BEGIN, 1.0)
+    (status,) = healths.statuses(['x'])
+    assert rows == []
+    assert CLOCK_UNSET in status.message
+    monkeypatch.undo()
+    monkeypatch.setattr(healths._gatherers['x'], 'take', rows.append)
+    for _ in range(round(KEPT_FOR / LOOK)):
+        healths._look()
+    play(bench, 1.0, now, 1.0)
+    assert rows
+
+
+class LateClock:
+    """A clock that runs ahead [s] of another one."""
+
+    def __init__(self, clock):
+        self._clock, self.ahead = clock, 0.0
+
+    def now(self):
+        return self._clock.now() + Duration(seconds=self.ahead)
+
+    def __getattr__(self, name):
+        return getattr(self._clock, name)
+
+
+@pytest.mark.parametrize('step', [3600.0, -3600.0])
+def test_a_shelving_outlives_a_step_of_the_clock_of_an_inactive_node(step, tmp_path, monkeypatch):
+    with free_domain() as domain, contextlib.ExitStack() as stack:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        stack.callback(rclpy.shutdown, context=context)
+        overrides = [Parameter('state_dir', value=str(tmp_path))]
+        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
+        stack.callback(node.destroy_node)
+        node.trigger_configure()
+        stack.callback(node.finish)
+        monitor, clock = node._axis_publishers['x'].axis.monitor, LateClock(node.get_clock())
+        monkeypatch.setattr(node, 'get_clock', lambda: clock)
+        now = clock.now().nanoseconds
+        node._kept._look()
+        node._axis_publishers['x'].shelve(shelve(now, 1800.0, 'the spindle is changed'))
+        clock.ahead = step
+        read = time.time_ns
+        monkeypatch.setattr(time, 'time_ns', lambda: read() + round(step * SECOND))
+        node._kept._look()
+        until = monitor.shelving.until - now - round(step * SECOND)
+        assert until / SECOND == pytest.approx(1800.0, abs=1.0)
+        assert monitor.shelving.reason == 'the spindle is changed'
 
 
 def test_a_tick_is_by_the_clock_by_which_messages_arrive(bench, monkeypatch):
