@@ -14,11 +14,10 @@ from surrogate.units import RPM
 COMMAND = ()
 SHIPPED = sorted((DATA / 'screws').glob('iso3408_*.yaml'))
 CATALOGUE = {
-    # HIWIN Ballscrews BS-08-2-EN-1704-K, double nuts R20-5T4-FDI, R40-10T4-FDI, R63-20T4-RDI:
+    # HIWIN Ballscrews BS-08-2-EN-1704-K, double nuts R20-5T4-FDI, R40-10T4-FDI:
     # diameter, lead, ball, C and C0, and the onset in rev/min with ISO VG 68, run in.
     '20x5': (20, 5, 3.175, 10.91, 23.56, 416),
     '40x10': (40, 10, 6.35, 37.89, 94.26, 169),
-    '63x20': (63, 20, 9.525, 106.57, 312.51, 97.3),
 }
 
 
@@ -128,7 +127,7 @@ def test_flags_that_do_not_suffice_are_refused(run, refused, monkeypatch):
     refused('balls_few', run, 'screw', 'new', '--balls', 'few', '--lead-mm', 5)
 
 
-def test_commands_tell_what_is_unusual(run, tmp_path, capsys, says, refused):
+def test_commands_tell_what_is_unusual(run, small_tiles, tmp_path, capsys, says, refused):
     """Beside their output, and refuse what no screw has."""
     text = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
     path = tmp_path / 'screw.yaml'

@@ -80,7 +80,9 @@ def hump(x, y):
     }
 
 
-def test_all_pictures_are_written(study, tmp_path):
+def test_all_pictures_are_written(study, tmp_path, monkeypatch):
+    """Coarse ones: what they show does not depend on it."""
+    monkeypatch.setattr('surrogate.plotting.style.DPI', 30)
     paths = list(figures.draw_figures(study, FIGURES, tmp_path))
     assert [path.name for path in paths] == [
         'paper_04_surface.png',
