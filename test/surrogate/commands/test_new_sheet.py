@@ -11,13 +11,15 @@ from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 from surrogate.units import RPM
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 COMMAND = ()
 SHIPPED = sorted((DATA / 'screws').glob('iso3408_*.yaml'))
 CATALOGUE = {
-    # HIWIN Ballscrews BS-08-2-EN-1704-K, double nuts R20-5T4-FDI, R40-10T4-FDI:
-    # diameter, lead, ball, C and C0, and the onset in rev/min with ISO VG 68, run in.
-    '20x5': (20, 5, 3.175, 10.91, 23.56, 416),
-    '40x10': (40, 10, 6.35, 37.89, 94.26, 169),
+    # HIWIN Ballscrews BS-08-2-EN-1704-K, double nuts R20-5T4-FDI, R40-10T4-FDI, R63-20T4-RDI:
+    # diameter, lead, ball, C and C0, and the onset of a small tile in rev/min with VG 68.
+    '20x5': (20, 5, 3.175, 10.91, 23.56, 444),
+    '40x10': (40, 10, 6.35, 37.89, 94.26, 170),
+    '63x20': (63, 20, 9.525, 106.57, 312.51, 110.6),
 }
 
 
@@ -127,7 +129,7 @@ def test_flags_that_do_not_suffice_are_refused(run, refused, monkeypatch):
     refused('balls_few', run, 'screw', 'new', '--balls', 'few', '--lead-mm', 5)
 
 
-def test_commands_tell_what_is_unusual(run, small_tiles, tmp_path, capsys, says, refused):
+def test_commands_tell_what_is_unusual(run, tmp_path, capsys, says, refused):
     """Beside their output, and refuse what no screw has."""
     text = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
     path = tmp_path / 'screw.yaml'
