@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from surrogate.asperities import law, running_in
 from surrogate.asperities.topography_onset import onset_of
-from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.commands.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
-from surrogate.surface import FIELDS
+from surrogate.surface import FIELDS, shipped_surface
+from surrogate.surface.file import read
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 
@@ -87,8 +87,8 @@ def small_tiles(one_small_tile):
 
 
 @pytest.fixture(scope='session')
-def surface_data(screw, oil):
-    return build_closed_form(screw, oil, default_settings(screw))
+def surface_data():
+    return read(shipped_surface(tier='closed_form'))
 
 
 @pytest.fixture(scope='session')

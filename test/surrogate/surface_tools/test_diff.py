@@ -98,7 +98,7 @@ def test_differences_beyond_the_tolerances_and_answers_of_one_alone_are_told(
     assert 'points are answered by one surface only' in capsys.readouterr().out
 
 
-def test_other_inputs_are_listed(run, tmp_path, capsys, screw, oil, says):
+def test_other_inputs_are_listed(run, tmp_path, capsys, screw, oil, says, small_tiles):
     """Another preload and other ranges: both are named, common ranges are compared."""
     nodes = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}
     settings = replace(default_settings(screw), temperature_range=(293.15, 333.15), **nodes)
