@@ -137,16 +137,18 @@ def test_a_summit_that_fills_the_film_touches(circular, semi_axis, transverse):
     assert march.least_film.value == pytest.approx(20e-9, rel=1e-3)
 
 
-def test_shear_thinning_flattens_a_wave(circular, semi_axis, transverse):
+@pytest.mark.parametrize(
+    ('ny', 'least'), [(33, 2e-4), pytest.param(65, 5e-4, marks=pytest.mark.long)]
+)
+def test_shear_thinning_flattens_a_wave(circular, semi_axis, transverse, ny, least):
     """Oil that the flow of the ripples thins leaks more, if little: the amplitude falls."""
     rough = transverse(60e-9, 0.5 * semi_axis)
-    fine = {'nx': 97, 'ny': 65}
-    thick, stiff, plain, thin = (
-        wave_amplitude(circular(rough, ripple_eyring_stress=stress, **grid), 0.5)
-        for stress, grid in ((math.inf, {}), (1e9, {}), (math.inf, fine), (1e6, fine))
+    thick, stiff, thin = (
+        wave_amplitude(circular(rough, nx=97, ny=ny, ripple_eyring_stress=stress), 0.5)
+        for stress in (math.inf, 1e9, 1e6)
     )
     assert stiff == pytest.approx(thick, rel=1e-5)
-    assert thin < 0.9995 * plain
+    assert thin < (1 - least) * thick
 
 
 def test_ridges_that_slip_sideways_move_through_the_film(circular, semi_axis):
