@@ -2,21 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reference tables and shared objects of the offline tests."""
 
+from contextlib import contextmanager
 import csv
+from functools import lru_cache
 import math
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from surrogate.asperities import running_in
+from surrogate.asperities import law, running_in
 from surrogate.asperities.topography_onset import onset_of
-from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.commands.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
-from surrogate.surface import FIELDS
+from surrogate.surface import FIELDS, shipped_surface
+from surrogate.surface.file import read
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 
@@ -54,26 +56,39 @@ def oil():
     return load_lubricant('iso_vg_68')
 
 
+@pytest.fixture(scope='session')
+def one_small_tile():
+    """
+    Return the context in which raceways have one small tile: what needs no statistics of it.
+
+    What is worked out is kept beside that of whole tiles, and for the next time.
+
+    """
+    kept, onsets = (lru_cache(one.__wrapped__) for one in (Contacts.of, onset_of))
+
+    @contextmanager
+    def small():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(running_in, 'TILES', 1)
+            patch.setattr(running_in, 'LENGTH', 1.2)
+            patch.setattr(running_in, 'WIDTH', 0.6)
+            patch.setattr(Contacts, 'of', staticmethod(kept))
+            patch.setattr(law, 'onset_of', onsets)
+            yield
+
+    return small
+
+
 @pytest.fixture(scope='module')
-def small_tiles():
-    """Draw a small tile for each raceway, for tests that need no statistics of it."""
-
-    def forget():
-        for cache in (Contacts.of, onset_of):
-            cache.cache_clear()
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(running_in, 'TILES', 1)
-        patch.setattr(running_in, 'LENGTH', 1.2)
-        patch.setattr(running_in, 'WIDTH', 0.6)
-        forget()
+def small_tiles(one_small_tile):
+    """Draw a small tile for each raceway of a module."""
+    with one_small_tile():
         yield
-    forget()
 
 
 @pytest.fixture(scope='session')
-def surface_data(screw, oil):
-    return build_closed_form(screw, oil, default_settings(screw))
+def surface_data():
+    return read(shipped_surface(tier='closed_form'))
 
 
 @pytest.fixture(scope='session')

@@ -167,7 +167,7 @@ def test_contact_grows_slower_on_plateaus():
     assert found[1] < 0.9 * found[0]
 
 
-def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
+def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways(small_tiles):
     other = replace(
         SCREW,
         name='other',
@@ -184,7 +184,7 @@ def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
     assert worn['screw'].acting != usual['screw'].acting
 
 
-def test_the_onset_factor_scales_the_onset_and_nothing_else():
+def test_the_onset_factor_scales_the_onset_and_nothing_else(small_tiles):
     """RCS over the speed by that of the onset stays, and a calibration sets the band."""
     faster = replace(SCREW, roughness=replace(SCREW.roughness, onset_factor=1.5))
     usual, law = (Contacts.of(one).law for one in (SCREW, faster))

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.sheets_onset import EFFICIENCY, onset_of_sheets
@@ -21,6 +22,7 @@ from surrogate.surface.contact_onset import RMS_POWER
 from surrogate.surface.file import write
 from surrogate.surface_tools.describe import info_page, info_record
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 SETTINGS = FullSettings(
     speed_range=(0.5, 100.0),
     load_range=(-2000.0, 2000.0),
@@ -34,14 +36,16 @@ WARM = 368.15  # [K], of no zone with the nominal sheets
 
 
 @pytest.fixture(scope='module')
-def found(screw, oil):
+def found(screw, oil, small_tiles):
     return onset_of_sheets(screw, oil, WARM)
 
 
-def test_it_is_the_onset_of_the_surface_of_these_sheets(screw, oil, surface_data):
+def test_it_is_the_onset_of_the_surface_of_these_sheets(screw, oil):
     """On a node of its temperatures; a surface of formulas states no band."""
-    theirs = onset_of_surface(Surface(surface_data), surface_data.temperature[0])
-    ours = onset_of_sheets(screw, oil, surface_data.temperature[0])
+    coarse = {'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
+    data = build_closed_form(screw, oil, replace(default_settings(screw), **coarse))
+    theirs = onset_of_surface(Surface(data), data.temperature[0])
+    ours = onset_of_sheets(screw, oil, data.temperature[0])
     alike = {'band': theirs.band, 'measure': theirs.measure, 'speed': 0.0}
     assert replace(ours, **alike) == replace(theirs, **alike)
     assert ours.speed == pytest.approx(theirs.speed, rel=1e-9)
@@ -89,7 +93,7 @@ def test_efficiencies_of_many_loads_are_those_of_one(screw):
 
 
 @pytest.mark.parametrize('marches', [{}, {'marched_film': 1.1, 'marched_error': 0.05}])
-def test_all_say_one_band_of_an_own_screw(oil, stand_in, small_tiles, tmp_path, marches):
+def test_all_say_one_band_of_an_own_screw(oil, stand_in, tmp_path, marches):
     """Build, point, onset and info; its Ra is a typical one, the raceway was marched or not."""
     given = CatalogueScrew(
         nominal_diameter=0.036, lead=0.012, nut='double', turns=3.5, dynamic_rating=30e3

@@ -85,18 +85,18 @@ def test_every_combination_is_built(run, tmp_path, builder, catalogue, capsys):
     """Screws times roughness times oils, each a file that is what the report says."""
     builder('build')
     catalogue.write_text(
-        THREE
-        + 'roughness: [{name: as_it_is}, {name: polished, rms_um: 0.06}]\n'
-        + 'load_range_N: [-500, 500]\ntemperature_range_degC: [20, 60]\n'
+        'screws: [nominal.yaml]\noils: [iso_vg_32, iso_vg_68]\n'
+        'roughness: [{name: as_it_is}, {name: polished, rms_um: 0.06}]\n'
+        'load_range_N: [-500, 500]\ntemperature_range_degC: [20, 60]\n'
     )
     out = tmp_path / 'out'
     assert run(catalogue, '--out', out, '--workers', 2) == 0
-    assert '6 surfaces built, 0 failed' in capsys.readouterr().out
+    assert '4 surfaces built, 0 failed' in capsys.readouterr().out
     items = report(out)['items']
     assert [item['name'] for item in items] == [
         f'{screw}_{oil}'
         for screw in ('nominal', 'nominal-polished')
-        for oil in ('iso_vg_32', 'iso_vg_68', 'iso_vg_100')
+        for oil in ('iso_vg_32', 'iso_vg_68')
     ]
     for item in items:
         surface = Surface.load(out / item['file'], screw=item['screw'], oil=item['oil'])
@@ -108,7 +108,7 @@ def test_every_combination_is_built(run, tmp_path, builder, catalogue, capsys):
         assert item['seconds'] > 0
         rough = surface.header['inputs']['screw']['roughness']['rms']
         assert rough == pytest.approx(0.06e-6 if item['roughness'] == 'polished' else 0.12e-6)
-    assert sorted(path.suffix for path in out.iterdir()) == ['.json', '.md', *6 * ['.npz']]
+    assert sorted(path.suffix for path in out.iterdir()) == ['.json', '.md', *4 * ['.npz']]
 
 
 def test_a_failed_item_never_stops_the_rest(run, tmp_path, builder, catalogue, capsys):
@@ -162,11 +162,10 @@ def killer(hello: str, gate: str, seen: list[int]) -> threading.Thread:
     return thread
 
 
-def test_a_cluster_that_loses_a_worker_builds_everything(
+def test_a_pool_that_loses_a_worker_builds_everything(
     run, tmp_path, builder, catalogue, monkeypatch, says
 ):
-    """Two Dask workers, one killed at work: the report shows who did its item, same surfaces."""
-    distributed = pytest.importorskip('distributed')
+    """Two workers, one killed at work: the report shows who did its item, same surfaces."""
     builder('build')
     names = {name: str(tmp_path / name) for name in ('hello', 'gate')}
     for name, path in names.items():
@@ -174,11 +173,7 @@ def test_a_cluster_that_loses_a_worker_builds_everything(
         monkeypatch.setenv(f'SWEEP_{name.upper()}', path)
     seen: list[int] = []
     thread = killer(names['hello'], names['gate'], seen)
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address='127.0.0.1:0', silence_logs='ERROR'
-    ) as cluster:
-        dask = cluster.scheduler_address
-        assert run(catalogue, '--out', tmp_path / 'out', '--dask', dask) == 0
+    assert run(catalogue, '--out', tmp_path / 'out', '--workers', 2) == 0
     thread.join(DEADLINE)
     found = report(tmp_path / 'out')
     host = worker_name().partition('/')[0]
@@ -192,10 +187,10 @@ def test_a_cluster_that_loses_a_worker_builds_everything(
     assert 'nominal_iso_vg_100' in found['workers'][other]['done']
     page = (tmp_path / 'out' / 'sweep.md').read_text()
     assert says('nominal_iso_vg_100_done_by', killed=killed, other=other) in page
-    monkeypatch.delenv('SWEEP_HELLO')
-    assert run(catalogue, '--out', tmp_path / 'again', '--workers', 1) == 0
-    again = report(tmp_path / 'again')['items']
-    assert [one['sha256'] for one in again] == [one['sha256'] for one in found['items']]
+    for known, item in zip(load_catalogue(catalogue), found['items'], strict=True):
+        settings = sweep.default_settings(known.tier, known.screw, known.ranges)
+        data = build_closed_form(known.screw, known.lubricant, settings)
+        assert data.sha256 == item['sha256']
 
 
 def test_sheets_beside_the_catalogue_are_found(tmp_path, catalogue):

@@ -62,7 +62,7 @@ pressure_viscosity_1_GPa: 22.0
 kinematics: rolling
 transits: 2
 places: 2
-grid: [65, 65]
+grid: [65, 33]
 roughness:
   patch: standard
   rms_um: 0.1

@@ -18,7 +18,7 @@ def rolling_case():
         load_case('circular_m20_l10'),
         domain=None,
         entrainment_speed=0.1,
-        grid=CaseGrid(nx=65, ny=65),
+        grid=CaseGrid(nx=65, ny=33),
         kinematics='rolling',
         transits=2.0,
         places=2,

@@ -59,7 +59,7 @@ def test_settings_of_a_case(rolling_case):
         film_floor=1e-9,
     )
     found = scaled_to_settings(stated)
-    assert (found.nx, found.ny, found.places) == (65, 65, 3)
+    assert (found.nx, found.ny, found.places) == (65, 33, 3)
     assert found.domain == (-3.0, 1.6, 1.7)
     assert found.slide_roll_ratio == 0.05
     assert found.film_floor == 1e-9

@@ -31,7 +31,7 @@ def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
     assert {'rcs_standard_error', 'mean_film_standard_error_m'} <= record.keys()
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
-    assert record['grid'] == [65, 65]
+    assert record['grid'] == [65, 33]
     assert record['converged'] is True
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)

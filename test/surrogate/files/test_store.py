@@ -14,7 +14,7 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 import pytest
 from surrogate.files.store import (
@@ -113,7 +113,6 @@ def records(store):
     return [record for _, record in readable(SAMPLES, store.rows(SAMPLES, 'ORDER BY row'))]
 
 
-@settings(max_examples=60)
 @given(st.lists(RECORDS, max_size=4))
 @example([Sample(name='a\0b', place=Place(-(2**63), 2**63 - 1), times=(-0.0, math.inf))])
 def test_records_come_back_bit_for_bit(tmp_path_factory, given_records):

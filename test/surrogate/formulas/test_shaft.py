@@ -91,7 +91,7 @@ def test_a_shaft_that_is_too_long_is_told(screw, says):
     assert list(shaft_doubts(shaft, speed, load)) == []
 
 
-def test_commands_tell_it(run, tmp_path, capsys, says):
+def test_commands_tell_it(run, small_tiles, tmp_path, capsys, says):
     """The limits of the sheet, and then the point."""
     sheet = tmp_path / 'long.yaml'
     text = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')

@@ -3,6 +3,7 @@
 """The profile over the onset factor: ends of known curves, bounds, and fits of known answers."""
 
 from dataclasses import replace
+from functools import cache
 import itertools
 import math
 
@@ -46,6 +47,14 @@ DRAG = {
 """Speed of the onset [rev/min], sliding speed over which a seal fades [m/s], its drag [N m]."""
 
 
+@cache
+def stairs():
+    """Return a staircase whose torque is still to come, and the contacts that are fitted to it."""
+    speed = np.concatenate([STAIRS, -STAIRS]) * RPM
+    run = no_load_run({'speed': speed, 'torque': speed}, source='stairs', temperature=WARM)
+    return run, formula_model(SCREW, OIL, run, FITTED)
+
+
 def stribeck(begins, fades, drag):
     """
     Return a staircase by the curve of a textbook, and the contacts that are fitted to it.
@@ -55,14 +64,14 @@ def stribeck(begins, fades, drag):
     a drag in proportion to the speed and a ripple of 1 %.
 
     """
-    speed = np.concatenate([STAIRS, -STAIRS]) * RPM
-    run = no_load_run({'speed': speed, 'torque': speed}, source='stairs', temperature=WARM)
+    run, model = stairs()
+    speed = run.speed
     turns = np.abs(speed) / RPM
     contacts = 0.06 * np.exp(-turns / (0.3 * begins)) + 0.05 * (turns / 600) ** 0.6
     beside = 0.5 * drag * (1 + np.exp(-np.abs(speed) * SCREW.pitch_radius / fades))
     ripple = 1 + 0.01 * np.random.default_rng(7).standard_normal(len(speed))
     torque = run.direction * (contacts + beside) * ripple + 1e-4 * speed
-    return replace(run, torque=torque), formula_model(SCREW, OIL, run, FITTED)
+    return replace(run, torque=torque), model
 
 
 def parabola(centre, error):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of solved contacts: its interpolation against a stand-in, its solves in the small."""
 
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 import math
 
@@ -44,9 +45,9 @@ class Stub:
     status: str = 'made up'
 
 
-@pytest.fixture
-def formulas(monkeypatch):
-    """Put the closed-form tier in the place of the solver; return the speeds it was asked for."""
+@contextmanager
+def in_place_of_the_solver():
+    """Put the closed-form tier there; give the speeds it was asked for."""
     solved = []
 
     def answer(opened, oil, point, *rest, **options):
@@ -57,9 +58,27 @@ def formulas(monkeypatch):
         solved.append(point.speed)
         return answer(opened, oil, point)
 
-    monkeypatch.setattr('surrogate.identify.table.solve_screw', solve)
-    monkeypatch.setattr('surrogate.identify.table.rebalance_screw', answer)
-    return solved
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr('surrogate.identify.table.solve_screw', solve)
+        patch.setattr('surrogate.identify.table.rebalance_screw', answer)
+        yield solved
+
+
+@pytest.fixture
+def formulas():
+    """Return the speeds that the closed-form tier was asked for in place of the solver."""
+    with in_place_of_the_solver() as solved:
+        yield solved
+
+
+@pytest.fixture(scope='module')
+def both():
+    """Return a run in both directions, the table over viscosity and friction, and formulas."""
+    run = run_at(np.concatenate([np.geomspace(100, 1000, 10), -np.geomspace(120, 900, 9)]))
+    with in_place_of_the_solver() as solved:
+        model = solved_model(SCREW, OIL, run, BOTH)
+    assert len(solved) == len(set(solved)) == 18
+    return run, model, closed_form_model(SCREW, OIL, run)
 
 
 def test_few_speeds_are_solved_as_they_are(formulas):
@@ -93,22 +112,19 @@ def test_many_speeds_share_a_few_nodes_and_temperatures_are_met(formulas):
     np.testing.assert_allclose(model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0), rtol=2e-3)
 
 
-def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
-    run = run_at(np.geomspace(50, 2000, 12))
-    model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
-    assert len(formulas) == len(set(formulas)) == 24
+def test_viscosity_and_friction_are_met_over_their_ranges(both):
+    _, *models = both
     for factor, friction in ((0.5, 0.02), (1.0, 0.1), (0.8, 0.13), (2.0, 0.3), (1.5, 0.06)):
-        found, expected = (one.torque(factor, friction, 1.0) for one in (model, exact))
+        found, expected = (one.torque(factor, friction, 1.0) for one in models)
         assert_met(found, expected)
 
 
-def test_known_answers_come_out_of_the_table(formulas):
+def test_known_answers_come_out_of_the_table(both):
     """The whole fit on the table, torque by the formulas themselves."""
-    run = run_at(np.concatenate([np.geomspace(50, 2000, 10), -np.geomspace(60, 1800, 9)]))
-    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08, 1.0)
-    torque = run.direction * (exact + 0.12) + 4e-4 * run.speed + 0.03
-    run = replace(run, torque=torque)
-    found = identify(SCREW, run, solved_model(SCREW, OIL, run, BOTH), BOTH)
+    run, model, exact = both
+    drag = exact.torque(1.2, 0.08, 1.0) + 0.12
+    run = replace(run, torque=run.direction * drag + 4e-4 * run.speed + 0.03)
+    found = identify(SCREW, run, model, BOTH)
     expected = (0.12, 4e-4, 0.03, 1.2, 0.08)
     assert [one.value for one in found.estimates] == pytest.approx(expected, rel=0.02)
 

@@ -5,7 +5,7 @@
 from dataclasses import replace
 import math
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -82,7 +82,6 @@ def test_at_rest_the_asperities_carry_everything_and_rub_by_the_slip_arm(screw, 
     assert helical < rest.friction_torque < 2.5 * helical
 
 
-@settings(max_examples=40)
 @given(st.floats(0.0, 2000.0), st.floats(0.0, 3.9), st.floats(283.0, 353.0))
 def test_friction_does_not_know_the_direction_of_the_load(rpm, ratio, kelvin):
     from surrogate.parameters import load_lubricant, load_screw

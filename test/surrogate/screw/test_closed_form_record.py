@@ -12,6 +12,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.opened import Contacts
 from surrogate.screw.record import rating_warnings
+from surrogate.units import RPM, ZERO_CELSIUS
 
 REST = OperatingPoint(speed=0.0, load=0.0, temperature=313.15)
 
@@ -44,6 +45,14 @@ def test_what_is_allowed_is_not_warned_of(warned, screw, oil, sign):
     for end, beyond in ((oil.minimum_temperature, 0.0), (oil.maximum_temperature, math.inf)):
         assert warned(temperature=end) == []
         assert warned(temperature=math.nextafter(end, beyond)) == ['temperature']
+
+
+def test_a_warning_says_the_value_and_what_is_allowed(screw, oil):
+    point = OperatingPoint(speed=3000 * RPM, load=60000.0, temperature=110 + ZERO_CELSIUS)
+    speed, load, _, temperature = rating_warnings(screw, oil, point)
+    assert speed.startswith('speed: D n is 96')
+    assert load.startswith('load: 60000 N, the static rating is 55000 N')
+    assert temperature.startswith('temperature: 110 degC, the oil sheet covers 0 to 100 degC')
 
 
 @pytest.mark.parametrize('load', [800.0, -800.0, 0.0])

@@ -171,8 +171,9 @@ def test_at_rest_a_point_is_the_ball_under_boundary_friction():
     assert found.friction_torque == pytest.approx(loss, rel=0.03)
 
 
-@pytest.mark.parametrize('preloads', [0.0, 1.0, 2.0])
-@pytest.mark.parametrize('rpm', [1.0, 20.0, 300.0])
+@pytest.mark.parametrize(
+    ('preloads', 'rpm'), [(0.0, 1.0), (0.0, 300.0), (1.0, 20.0), (2.0, 1.0), (2.0, 300.0)]
+)
 def test_formulas_and_solved_contacts_agree_while_both_pairs_press(preloads, rpm):
     """Films of formulas, the motion without load: within 6 %, as of two nuts."""
     formulas = closed_form.solve(
@@ -182,8 +183,7 @@ def test_formulas_and_solved_contacts_agree_while_both_pairs_press(preloads, rpm
     assert float(formulas.friction_torque) == pytest.approx(solved.friction_torque, rel=0.06)
 
 
-@pytest.mark.parametrize('rpm', [5.0, 300.0])
-@pytest.mark.parametrize('preloads', [2.5, 3.5])
+@pytest.mark.parametrize(('preloads', 'rpm'), [(2.5, 300.0), (3.5, 5.0)])
 def test_beyond_unloading_the_third_flank_presses_as_solved(preloads, rpm):
     """RCS is that of the flank which friction presses; the torque of formulas is no smaller."""
     formulas = closed_form.solve(

@@ -299,13 +299,12 @@ def test_rest_is_dry_and_loses_most(settings):
     assert fast.film_ratio > 1
 
 
-@pytest.mark.parametrize('settings', KINEMATICS.values(), ids=KINEMATICS)
-@pytest.mark.parametrize('load', [800.0, -800.0])
+@pytest.mark.parametrize(('settings', 'load'), [(STANDING, 800.0), (ROLLING, -800.0)])
 def test_energy_holds_whatever_the_roughness_does(settings, load):
     """Torque from loads and from lost power, some of the load on asperities."""
     found = at(10 if settings is STANDING else MIXED, load, settings)
     assert found.converged, found.status
-    assert (found.rcs > 0) == (settings is not SMOOTH)
+    assert found.rcs > 0
     assert found.energy_error < 1e-8
     assert found.back_driving == (load < 0)
 

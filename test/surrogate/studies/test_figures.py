@@ -80,6 +80,13 @@ def hump(x, y):
     }
 
 
+def test_a_picture_is_written(study, tmp_path):
+    (path,) = figures.draw_figures(study, ['8'], tmp_path)
+    assert path.read_bytes().startswith(b'\x89PNG')
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.long
 def test_all_pictures_are_written(study, tmp_path):
     paths = list(figures.draw_figures(study, FIGURES, tmp_path))
     assert [path.name for path in paths] == [

@@ -12,11 +12,15 @@ import pytest
 from surrogate.files import json_text
 from surrogate.studies.validation import (
     compared,
+    LOADS,
     OURS,
     PUBLISHED,
     reduced_peak_height,
+    rolling_force,
     span,
+    SPEEDS,
     validation_page,
+    ValidationCase,
 )
 
 DOCUMENT = Path(__file__).parents[3] / 'docs' / 'theory' / 'validation.md'
@@ -24,19 +28,49 @@ SHARES = (np.arange(20000) + 0.5) / 20000
 NUMBER = re.compile(r'\d+(?:\.\d+)?')
 
 
+QUICK = 'efficiency_with_drag', 'efficiency_of_load', 'efficiency_over_load', 'sealed_drag'
+"""Comparisons whose numbers take a second."""
+
+
+def assert_alike(kept, table):
+    """Hold lines to be the same words, and numbers within what another processor may round."""
+    assert NUMBER.sub('#', kept) == NUMBER.sub('#', table)
+    numbers = [[float(one) for one in NUMBER.findall(part)] for part in (kept, table)]
+    assert numbers[0] == pytest.approx(numbers[1], rel=0.03, abs=0.011)
+
+
+def test_the_document_holds_what_is_quickly_compared(one_small_tile):
+    """Some lines of its first table, and of that of rolling forces."""
+    places = {f'| {load:g} | {rpm:.0f} |': (load, rpm) for load, rpm in zip(LOADS, SPEEDS)}
+    with one_small_tile():
+        case = ValidationCase()
+        quick = [one for one in PUBLISHED['values'] if one['ours'] in QUICK]
+        known = {
+            'comparisons': [compared(value, OURS[value['ours']](case)) for value in quick],
+            'rolling': [rolling_force(case, *place) for place in places.values()],
+        }
+    empty = {'without_number': [], 'rolling_over_width': {}, 'torque_Nm': {}}
+    lines = DOCUMENT.read_text(encoding='utf-8').splitlines()
+    starts = *(f'| {value["what"]} |' for value in quick), *places
+    page = validation_page(known | empty).splitlines()
+    for start in starts:
+        kept, told = ([one for one in text if one.startswith(start)] for text in (lines, page))
+        assert len(kept) == len(told) == 1, start
+        assert_alike(kept[0], told[0])
+
+
+@pytest.mark.long
 def test_the_document_holds_the_tables_of_the_command(record):
-    """Word for word; numbers within what another processor may round."""
     text = DOCUMENT.read_text(encoding='utf-8')
     for table in validation_page(record).split('\n\n'):
         head = table.splitlines()[0]
         assert text.count(head) == 1
         first = text.index(head)
         kept = text[first:].split('\n\n')[0]
-        assert NUMBER.sub('#', kept) == NUMBER.sub('#', table)
-        numbers = [[float(one) for one in NUMBER.findall(part)] for part in (kept, table)]
-        assert numbers[0] == pytest.approx(numbers[1], rel=0.03, abs=0.011)
+        assert_alike(kept, table)
 
 
+@pytest.mark.long
 def test_a_record_says_everything_of_each_comparison(record):
     """All texts are there, ranges rise, and numbers are finite."""
     verdicts = [one['verdict'] for one in record['comparisons']]
@@ -47,6 +81,7 @@ def test_a_record_says_everything_of_each_comparison(record):
     assert json.loads(json_text(record))['torque_Nm'] == record['torque_Nm']
 
 
+@pytest.mark.long
 def test_the_torque_under_other_laws(record):
     """A limit that is not reached changes nothing; limited Newtonian oil rises with the limit."""
     plain, high, low, thin, thick, *limited = list(record['torque_Nm'].values())[:7]
@@ -55,6 +90,7 @@ def test_the_torque_under_other_laws(record):
     assert thin < plain < thick < limited[0] < limited[1]
 
 
+@pytest.mark.long
 def test_more_oil_costs_more_rolling(record):
     """It grows with the width of the oil, with its logarithm once that is wide."""
     ratios = record['rolling_over_width']

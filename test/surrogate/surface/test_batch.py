@@ -7,7 +7,7 @@ import itertools
 import math
 from types import SimpleNamespace
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -58,7 +58,6 @@ def compare(surface, speed, load, temperature):
     return found
 
 
-@settings(max_examples=300)
 @given(
     st.sampled_from(SURFACES),
     st.tuples(st.floats(0.05, 229.0), st.floats(-3960.0, 3960.0), st.floats(283.15, 353.15))
@@ -94,7 +93,6 @@ def test_masked_and_corrected_points_are_among_them():
         assert np.count_nonzero(compare(surface, *points)[name] == expected) > 20
 
 
-@settings(max_examples=50)
 @given(st.sampled_from(SURFACES), st.floats(0.04, 240.0), st.floats(282.0, 354.0))
 def test_a_scan_has_the_same_bits(surface, speed, temperature):
     tables = surface.array_tables

@@ -6,7 +6,7 @@ from dataclasses import replace
 import math
 from types import SimpleNamespace
 
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -145,7 +145,6 @@ def test_limits_of_what_is_solved_are_allowed(name, value, sound):
 
 
 @both
-@settings(max_examples=100)
 @given(CELLS, FRACTIONS, SOLUTIONS)
 def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
     """Every field, to rounding; what follows from the torque too; the flag tells."""
@@ -161,7 +160,6 @@ def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
 
 
 @both
-@settings(max_examples=150)
 @given(CELLS, FRACTIONS, SOLUTIONS, CELLS, FRACTIONS)
 def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, other, others):
     """In any other cell, and in the same cell beyond the trust region, bit for bit."""
@@ -176,7 +174,6 @@ def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, oth
 
 
 @both
-@settings(max_examples=150)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS)
 def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
     """Anywhere in the cell: positive stays positive, shares stay shares, and no overshoot."""
@@ -196,7 +193,6 @@ def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
 
 
 @both
-@settings(max_examples=60)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS, st.integers(0, 2), st.sampled_from([0, 1]))
 def test_the_pull_vanishes_at_the_faces(shipped, cell, fractions, drawn, others, axis, side):
     """A step h from a face the torque is pulled by no more than a multiple of h squared."""

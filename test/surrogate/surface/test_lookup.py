@@ -6,7 +6,7 @@ from dataclasses import replace
 import math
 import tracemalloc
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -57,7 +57,6 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
     assert checked > 500
 
 
-@settings(max_examples=60)
 @given(SPEEDS, LOADS, KELVINS)
 def test_lookup_agrees_with_the_model(speed, load, kelvin):
     """Anywhere: efficiency and RCS within 0.003 of a solve at the same point."""
@@ -74,7 +73,6 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
 
 
 @both
-@settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
 def test_rcs_never_rises_and_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
     """The film strictly; in the full tier once it is off the floor."""
@@ -100,7 +98,6 @@ def test_nodes_whose_film_thins_with_speed_are_on_the_floor():
 
 
 @both
-@settings(max_examples=60)
 @given(SPEEDS, LOADS, KELVINS, st.sampled_from(FIELDS))
 def test_lookup_is_continuous(shipped, speed, load, kelvin, name):
     """A step of a millionth changes nothing by more than a part in ten thousand."""

@@ -91,7 +91,9 @@ def test_a_surface_without_answers_is_drawn(coarse):
     assert [text.get_text() for text in figure.axes[1].texts] == ['not known']
 
 
-def test_pictures_per_temperature(run, tmp_path, capsys):
+def test_pictures_per_temperature(run, part, tmp_path, capsys, monkeypatch):
+    """Of one slice as fine as always: names and sizes do not depend on the temperature."""
+    monkeypatch.setattr(figures, 'cut', lambda surface, temperature: part)
     assert run('--out', tmp_path / 'a', '--temperature-degC', 30, 62.5) == 0
     paths = sorted((tmp_path / 'a').iterdir())
     assert [path.name for path in paths] == ['surface_30degC.png', 'surface_62.5degC.png']

@@ -11,7 +11,7 @@ import struct
 import subprocess
 import sys
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -50,7 +50,6 @@ def filled(out, number=3):
     return store_path(out).read_bytes()
 
 
-@settings(max_examples=60)
 @given(st.dictionaries(st.text(max_size=8), PLAIN, max_size=5))
 def test_results_come_back_bit_for_bit(tmp_path_factory, result):
     """Whatever the floats are, in the same process and after opening the file again."""
@@ -103,7 +102,6 @@ def test_a_flipped_bit_in_a_result_costs_that_result_alone(tmp_path):
             assert store.get('key1') == {'rcs': 1 / 3}
 
 
-@settings(max_examples=60)
 @given(st.data())
 def test_a_damaged_file_gives_no_wrong_result(tmp_path_factory, data):
     """Cut off or damaged anywhere: a result is right or not there, and the next one is kept."""

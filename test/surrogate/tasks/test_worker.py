@@ -10,7 +10,7 @@ import struct
 import subprocess
 import sys
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -71,7 +71,6 @@ def bits(value):
     return [bits(part) for part in value] if isinstance(value, list) else (value, type(value))
 
 
-@settings(max_examples=60)
 @given(PLAIN)
 def test_a_line_of_json_holds_a_plain_result_bit_for_bit(result):
     """Whatever the floats are: a worker sends it so, and a store keeps it so."""

@@ -16,6 +16,7 @@ from surrogate.surface import FIELDS, Surface
 from surrogate.surface_tools.check import check_surface
 from surrogate.tasks.store import TaskStore
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 SETTINGS = FullSettings(
     speed_range=(1.0, 60.0),
     load_range=(-1000.0, 1000.0),

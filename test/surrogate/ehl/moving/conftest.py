@@ -13,7 +13,7 @@ def circular(moes_case):
     contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
 
     def march(raceway, transits=1.0, **settings):
-        known = {'nx': 65, 'ny': 65, 'places': 1, 'film_floor': 1e-10, **settings}
+        known = {'nx': 65, 'ny': 33, 'places': 1, 'film_floor': 1e-10, **settings}
         return march_contact(
             contact, oil, condition, raceway, transits=transits, settings=MarchSettings(**known)
         )

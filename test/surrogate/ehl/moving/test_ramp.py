@@ -3,6 +3,7 @@
 """Speed ramps: the onset of made-up columns, and a march down and up against standing speeds."""
 
 from dataclasses import replace
+from functools import cache
 import math
 
 import numpy as np
@@ -76,25 +77,33 @@ def test_a_flat_strip_loses_what_a_smooth_one_does():
     assert both == pytest.approx(1.0, abs=0.005)
 
 
+@cache
+def onsets(transits):
+    """Return the onset of a ramp down and of one up [m/s]."""
+    known = {'transits': transits, 'settings': SETTINGS}
+    down = moving.ramp_strip(STRIP, OIL, (0.1, 0.03), rough, **known)
+    up = moving.ramp_strip(STRIP, OIL, (0.03, 0.1), rough, **known)
+    assert down.status is up.status is moving.MarchStatus.CONVERGED
+    assert down.speeds[0] == pytest.approx(0.1, rel=0.01)
+    assert down.speeds[-1] == pytest.approx(0.03, rel=1e-6)
+    return [ramp.onset(rcs=0.02, transits=1.0) for ramp in (down, up)]
+
+
 def test_down_and_up_enclose_the_standing_speed():
-    """Contact lags behind the speed, the less the slower it changes; no lag at one speed."""
-    ends = {}
-    for transits in (6.0, 18.0):
-        known = {'transits': transits, 'settings': SETTINGS}
-        down = moving.ramp_strip(STRIP, OIL, (0.1, 0.03), rough, **known)
-        up = moving.ramp_strip(STRIP, OIL, (0.03, 0.1), rough, **known)
-        assert down.status is up.status is moving.MarchStatus.CONVERGED
-        assert down.speeds[0] == pytest.approx(0.1, rel=0.01)
-        assert down.speeds[-1] == pytest.approx(0.03, rel=1e-6)
-        ends[transits] = [ramp.onset(rcs=0.02, transits=1.0) for ramp in (down, up)]
-    lags = [math.log(up / down) for down, up in ends.values()]
-    assert 0 < lags[1] < lags[0] < 0.3
-    slow, fast = 0.9 * ends[6.0][0], 1.1 * ends[6.0][1]
+    """Contact lags behind the speed; no lag at one speed."""
+    down, up = onsets(6.0)
+    assert 0 < math.log(up / down) < 0.3
     touching, parted = (
         moving.march_strip(STRIP, OIL, speed, rough, transits=2.0, settings=SETTINGS).rcs.value
-        for speed in (slow, fast)
+        for speed in (0.9 * down, 1.1 * up)
     )
     assert parted < 0.02 < touching
+
+
+@pytest.mark.long
+def test_contact_lags_the_less_the_slower_the_speed_changes():
+    quick, slow = (math.log(up / down) for down, up in map(onsets, (6.0, 18.0)))
+    assert 0 < slow < quick
 
 
 def test_a_ramp_without_an_end_is_one_sentence(refused):
