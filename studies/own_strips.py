@@ -7,19 +7,21 @@ Usage: python studies/own_strips.py [--report].
 
 Each strip that ends is added to results/own_strips_confined.csv at once, and one that is there is
 not marched again. Those of results/own_strips.csv were marched on tiles whose summits were cut at
-their hardness alone. Last it prints how the corrected law tells the strips that were held out, and
-how both cuts differ.
+their hardness alone. Last it prints by how much strips of a raceway differ, how the corrected law
+tells those that were held out, and how both cuts differ.
 
 """
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 import math
 from pathlib import Path
 import time
 from typing import Any, cast
 
+import numpy as np
+from surrogate.asperities.law import FILM_BANDS
 from surrogate.builder.full.march import FINER, march_task, march_tasks, marched_film
 from surrogate.parameters import load_lubricant, load_screw, Screw
 from surrogate.raceway.fractal import Lay
@@ -32,6 +34,8 @@ CONFINED = Path('studies/results/own_strips_confined.csv')
 """Strips of the tiles that a build marches."""
 HELD_OUT = 'strip 4'
 """Name of the strip that corrects nothing."""
+COARSE = 1, 2, 3, 4
+"""Numbers of the coarse strips."""
 WANTED = 1.15
 """Factor in film within which it is wanted [-]."""
 
@@ -163,31 +167,81 @@ def march(number: int, name: str, lay: str, task: dict[str, Any]) -> Strip:
     )
 
 
+def raceways(rows: Sequence[Strip]) -> dict[int, dict[str, Strip]]:
+    """Return the strips that touch by their names, of each raceway by its number."""
+    touching = [row for row in rows if math.isfinite(row.film_factor)]
+    return {
+        number: {row.strip: row for row in touching if row.own == number}
+        for number in sorted({row.own for row in touching})
+    }
+
+
+def newest(alone: Sequence[Strip], confined: Sequence[Strip]) -> list[Strip]:
+    """Return the strips as built of raceways whose coarse ones touch, else those cut alone."""
+    names = {f'strip {number}' for number in COARSE}
+    there = {number for number, strips in raceways(confined).items() if names <= {*strips}}
+    kept = [row for row in alone if row.own not in there]
+    return kept + [row for row in confined if row.own in there]
+
+
+def within(rows: Sequence[Strip], lay: str) -> tuple[float, int]:
+    """Return the pooled deviation of coarse strips of a raceway in logarithms [-], and strips."""
+    logs = [
+        np.log([row.film_factor for row in strips.values() if row.strip != FINER])
+        for strips in raceways(rows).values()
+        if next(iter(strips.values())).lay == lay
+    ]
+    several = [values for values in logs if values.size > 1]
+    squares = sum(values.size * values.var() for values in several)
+    strips = sum(values.size for values in several)
+    return math.sqrt(squares / max(strips - len(several), 1)), strips
+
+
+def held_out(strips: Mapping[str, Strip], name: str) -> tuple[float, float] | None:
+    """Return logarithms [-]: how far a strip is off from what the others tell, and its band."""
+    others = {
+        other: {'film_factor': row.film_factor} for other, row in strips.items() if other != name
+    }
+    known = marched_film(others, cast('Lay', next(iter(strips.values())).lay))
+    if name not in strips or not known:
+        return None
+    off = math.log(strips[name].film_factor / known['marched_film'])
+    return off, NINE_OF_TEN * known['marched_error']
+
+
 def report(rows: Sequence[Strip]) -> Iterator[str]:
-    """Yield for each screw what its strips correct, and how that tells the one held out."""
-    good = {lay: [] for lay in (ISO, LON, TRA)}  # type: dict[str, list[bool]]
-    for number in sorted({row.own for row in rows}):
-        strips = {row.strip: row for row in rows if row.own == number}
-        factors = {
-            name: {'film_factor': None if math.isnan(row.film_factor) else row.film_factor}
-            for name, row in strips.items()
-        }
-        held = factors.pop(HELD_OUT, {'film_factor': None})['film_factor']
-        lay, seconds = next(iter(strips.values())).lay, sum(row.seconds for row in strips.values())
+    """Yield the strips of each raceway and how they tell the fourth; by lay and state how well."""
+    screws = raceways(rows)
+    for number, strips in screws.items():
         text = ', '.join(f'{name} {row.film_factor:.2f}' for name, row in strips.items())
-        known = marched_film(factors)
-        if known and held is not None:
-            off = math.log(held / known['marched_film'])
-            band = math.exp(NINE_OF_TEN * known['marched_error'])
-            inside = abs(off) <= math.log(max(band, WANTED))
-            good[lay].append(inside)
-            text += (
-                f': {known["marched_film"]:.2f} within {band:.2f}, held out '
-                f'{math.exp(off):.2f} of that, {"inside" if inside else "outside"}'
-            )
-        yield f'{1 + number} {lay}: {text}; {seconds:.0f} s'
-    for lay, every in good.items():
-        yield f'{lay}: {sum(every)} of {len(every)} inside'
+        if found := held_out(strips, HELD_OUT):
+            off, band = map(math.exp, found)
+            text += f': {HELD_OUT} is {off:.2f} of what the others tell within {band:.2f}'
+        seconds = sum(row.seconds for row in strips.values())
+        yield f'{1 + number} {OWN[number].lay} {OWN[number].state}: {text}; {seconds:.0f} s'
+    for lay in (ISO, LON, TRA):
+        scatter, count = within(rows, lay)
+        yield f'{lay}: deviation within a raceway {scatter:.3f} of {count} strips'
+        for states in (('new', 'run_in'), ('new',), ('run_in',)):
+            part = [
+                strips
+                for number, strips in screws.items()
+                if OWN[number].lay == lay and OWN[number].state in states
+            ]
+            yield f'{lay}, {" and ".join(states)}: {", ".join(coverage(part))}'
+
+
+def coverage(part: Sequence[Mapping[str, Strip]]) -> Iterator[str]:
+    """Yield how many strips the law tells, and the others, or within the factor wanted."""
+    rows = [row for strips in part for name, row in strips.items() if name != FINER]
+    told = sum(abs(math.log(row.film_factor)) <= math.log(FILM_BANDS[row.lay]) for row in rows)
+    yield f'by the law {told} of {len(rows)} inside'
+    for which, names in (('fourth', [HELD_OUT]), ('each in turn', [f'strip {n}' for n in COARSE])):
+        found = [held_out(strips, name) for strips in part for name in names]
+        known = [pair for pair in found if pair]
+        inside = sum(abs(off) <= band for off, band in known)
+        near = sum(abs(off) <= max(band, math.log(WANTED)) for off, band in known)
+        yield f'{which} {inside} of {len(known)} inside, {near} inside or within {WANTED}'
 
 
 def confined_over_alone(alone: Sequence[Strip], confined: Sequence[Strip]) -> Iterator[str]:
@@ -220,7 +274,9 @@ def main() -> None:
                 write_table(CONFINED, Strip, [*read_table(CONFINED, Strip), strip], digits=5)
                 print(strip, flush=True)
     alone, confined = (read_table(path, Strip) for path in (RESULTS, CONFINED))
-    print(*report(alone), *confined_over_alone(alone, confined), sep='\n')
+    print('Cut at the hardness alone:', *report(alone), sep='\n')
+    print('As built:', *report(confined), *confined_over_alone(alone, confined), sep='\n')
+    print('As built where four were marched:', *report(newest(alone, confined)), sep='\n')
 
 
 if __name__ == '__main__':

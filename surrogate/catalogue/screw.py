@@ -130,7 +130,8 @@ def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:
         return Noted(given.balls, 'given')
     circle = math.hypot(math.pi * diameter, given.lead)
     turns = (given.turns or math.nan) / (2 if halved else 1)
-    half = f', half of the {given.turns:g} of the nut' if halved else ''
+    nuts = ' in each of two nuts' if given.nut == 'double' else ''
+    half = f', half of the {given.turns:g} of the nut' if halved else nuts
     spacers = ', every second ball a spacer' if spaced else ''
     balls = int(turns * circle / ball / (2 if spaced else 1))
     return Noted(balls, f'derived ({turns:g} turns{half}{spacers})')

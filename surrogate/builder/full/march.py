@@ -15,13 +15,13 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
-import numpy as np
-from surrogate.asperities.law import ONSET_RCS
+from surrogate.asperities.law import FILM_BANDS, ONSET_RCS
 from surrogate.asperities.running_in import RunningContact, TILES
 from surrogate.asperities.strips import raceway_strips, TRANSITS, WAVES
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
-from surrogate.raceway.stated import FILM_FACTORS
+from surrogate.raceway.fractal import Lay
+from surrogate.raceway.stated import FILM_FACTORS, NINE_OF_TEN
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_side
@@ -30,9 +30,9 @@ ENOUGH = 2 * ONSET_RCS
 """RCS at which a march ends [-]: slower speeds do not tell the onset."""
 FINER = 'finer strip'
 """Name of the strip with one wave more."""
-SCATTER, SCATTER_STRIPS = 0.1, 2
-"""Standard deviation of the logarithm of the film factor between strips of one raceway [-], and as
-how many strips it counts beside those of this one [-]."""
+WITHIN = {'isotropic': 0.045, 'longitudinal': 0.11, 'transverse': 0.135}
+"""Standard deviation of the logarithm of the film factor between strips of one raceway by its lay
+[-]: 28 strips of 7, 36 of 9, 16 of 4 own screws, pooled by `studies/own_strips.py: within`."""
 FEWEST = 2
 """Strips with an onset that correct the law, at least [-]."""
 
@@ -107,13 +107,16 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def marched_film(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+def marched_film(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> dict[str, float]:
     """
-    Return the correction of the law by marched strips, as a sheet states it; empty if by too few.
+    Return the correction of the law by strips of a raceway, as a sheet states it; empty if by few.
 
-    `marched_film` is the mean film at the onset over that of the law [-], `marched_error` the
-    standard error of its logarithm for one more strip [-]: of the mean, of the scatter between
-    strips, and of the difference between the finer strip and the coarse one of the same tile.
+    Normal model of random effects (Gelman and others, Bayesian Data Analysis, 3rd edition 2013,
+    section 2.5): over the law the logarithm of the film at the onset is mu + e, with mu ~ N(0,
+    tau^2) between raceways, e ~ N(0, `WITHIN`^2) in one, and both variances together that of the
+    law. The mean of the strips is also off by the change from the first to the finer strip.
+    `marched_film` is exp of the posterior mean of mu [-], `marched_error` the deviation of the
+    posterior prediction of one more strip [-]. So no strips would leave the law, many their mean.
 
     """
     least, most = FILM_FACTORS
@@ -125,11 +128,12 @@ def marched_film(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
     finer = logs.pop(FINER, math.nan)
     if len(logs) < FEWEST:
         return {}
-    values = np.array([*logs.values()])
-    squares = np.sum((values - values.mean()) ** 2) + SCATTER_STRIPS * SCATTER**2
-    scatter = math.sqrt(squares / (values.size - 1 + SCATTER_STRIPS))
     change = finer - logs.get('strip 1', math.nan)
-    error = math.hypot(
-        scatter * math.sqrt(1 + 1 / values.size), 0.0 if math.isnan(change) else change
-    )
-    return {'marched_film': math.exp(values.mean()), 'marched_error': error}
+    within = WITHIN[lay] ** 2
+    between = (math.log(FILM_BANDS[lay]) / NINE_OF_TEN) ** 2 - within
+    mean_error = within / len(logs) + (0.0 if math.isnan(change) else change**2)
+    weight = between / (between + mean_error)
+    return {
+        'marched_film': math.exp(weight * sum(logs.values()) / len(logs)),
+        'marched_error': math.sqrt(weight * mean_error + within),
+    }

@@ -92,7 +92,8 @@ def build_full_surface(
         tasks = march_tasks(screw, lubricant) if march else {}
         results = run.solve(march_task, tasks, 'strip') if tasks else {}
         strips = {name: result for name, result in results.items() if result}
-        data = build_full(with_raceway(screw, **marched_film(strips)), lubricant, settings, run)
+        marched = with_raceway(screw, **marched_film(strips, screw.roughness.lay))
+        data = build_full(marched, lubricant, settings, run)
     if tasks:
         data = replace(data, header={**data.header, 'march': strips})
     for sentence in shortfalls(data):

@@ -132,6 +132,13 @@ def test_halves_that_need_not_be_equal_are_named(says):
         assert list(equal_halves(CatalogueScrew(**SIZE | counted))) == []
 
 
+def test_turns_of_a_double_nut_are_those_of_each():
+    """Its sheet says so; a turn of a 20 x 5 is 65 mm, and holds 20 balls of 3.175 mm."""
+    screw, notes = screw_of(CatalogueScrew(**SIZE | {'turns': 5.0, 'ball_diameter': 3.175e-3}))
+    assert screw.loaded_balls_per_nut == 102
+    assert notes['loaded_balls_per_nut'] == 'derived (5 turns in each of two nuts)'
+
+
 def test_spacers_halve_the_loaded_balls():
     given = CatalogueScrew(**SIZE | {'nut': 'oversize', 'spacers': 'yes'}, ball_diameter=3.175e-3)
     screw, notes = screw_of(given)
