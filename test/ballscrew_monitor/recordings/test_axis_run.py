@@ -185,7 +185,6 @@ def event_array(event, now, notes):
     return event_of(event, notes, axis=0, log_time=now, place=0)
 
 
-@settings(max_examples=30)
 @given(
     st.lists(
         st.tuples(

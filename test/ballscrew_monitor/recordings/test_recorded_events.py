@@ -591,7 +591,7 @@ def whole(tmp_path_factory):
     return bag.files[0].read_bytes(), node.said
 
 
-@settings(max_examples=5)
+@settings(max_examples=settings.default.max_examples // 10)
 @given(seed=st.integers(0, 2**32 - 1), raw=st.booleans())
 def test_cut_at_any_snapshots_the_rest_is_judged_the_same(seed, raw, copy_bag):
     with tempfile.TemporaryDirectory() as folder:
