@@ -25,7 +25,7 @@ from surrogate.files import InputError
 
 BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
 ROWS = 60
-DRAWN = 40
+DRAWN = 20
 DAY = 86400.0
 
 
