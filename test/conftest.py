@@ -98,7 +98,7 @@ SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 
 # The machine is shared with others: how long an example takes says nothing about the code.
 UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-# `make test` draws the same few examples each time: whoever did not change the code sees no failure.
+# `make test` draws the same few examples each time: whoever changed no code sees no failure.
 settings.register_profile('same', UNHURRIED, derandomize=True, database=None, max_examples=30)
 # `make fuzz` draws others each time, more of them, and begins with those that failed before.
 settings.register_profile(

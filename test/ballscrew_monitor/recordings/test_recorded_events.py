@@ -578,6 +578,7 @@ def test_other_joints_and_several_kinds_of_notes_come_again(tmp_path):
     assert_given_again(node, tmp_path)
 
 
+@settings(max_examples=settings.default.max_examples // 2)
 @given(share=st.floats(0.0, 1.0))
 def test_a_file_that_is_cut_at_any_byte_gives_the_first_states_again(share, whole):
     data, said = whole
