@@ -15,7 +15,6 @@ from ballscrew_monitor.report.free_run import identified
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
 import pytest
-from surrogate.builder.tiers import default_settings
 from surrogate.parameters import find_sheet, load_lubricant, load_screw
 from surrogate.surface import shipped_surface
 from surrogate.surface.file import read
@@ -295,13 +294,8 @@ def test_a_run_under_load_is_none_unless_somebody_says_so(tmp_path):
 
 
 def test_a_single_nut_with_oversize_balls_goes_from_its_catalogue_page_to_a_verdict(
-    tmp_path, capsys, monkeypatch
+    tmp_path, capsys
 ):
-    few = {'speed_nodes': 20, 'temperature_nodes': 5}
-    monkeypatch.setattr(
-        'surrogate.builder.tiers.default_settings',
-        lambda tier, screw, changes: default_settings(tier, screw, few | changes),
-    )
     folder = tmp_path / 'logs'
     write(folder / 'cut.csv', SPEEDS)
     page = ['--nominal-diameter-mm', '40', '--lead-mm', '10', '--ball-diameter-mm', '6.35']
