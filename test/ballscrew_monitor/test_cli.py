@@ -13,6 +13,7 @@ from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, Kind
 import pytest
 from surrogate.files import InputError
+from surrogate.parameters import find_sheet
 from surrogate.surface import SurfaceError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -136,15 +137,19 @@ def test_help_names_the_defaults_without_the_place_of_the_clone(command, capsys)
     assert str(ROOT) not in out
 
 
-def test_offline_commands_import_no_ros():
+def test_offline_commands_import_no_ros(tmp_path):
+    """The point is one of a smooth raceway, which has no onset of contact to look for."""
+    sheet = tmp_path / 'smooth.yaml'
+    sheet.write_text(find_sheet('nominal', 'screws').read_text().replace('0.12\n', '0.0\n'))
     script = (
         'import sys\n'
         'from ballscrew_monitor.cli import main\n'
-        "code = main(['point', '--speed-rpm', '600', '--load-N', '1000'])\n"
+        "more = ['--tier', 'closed_form', '--screw', sys.argv[1]]\n"
+        "code = main(['point', '--speed-rpm', '600', '--load-N', '1000', *more])\n"
         "print(code, [name for name in sys.modules if name.split('.')[0] in\n"
         "      ('rclpy', 'ballscrew_msgs', 'mcap', 'matplotlib')])\n"
     )
-    done = python('-c', script)
+    done = python('-c', script, sheet)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == '0 []'
 

@@ -287,7 +287,7 @@ NUMBER = itertools.count()
 
 @pytest.mark.parametrize('name', SEEDS)
 @given(changes=CHANGES)
-@settings(max_examples=40)
+@settings(max_examples=settings.default.max_examples // 3)
 def test_a_changed_file_is_read_or_refused(name, seeds, tmp_path_factory, changes):
     path, data, read = seeds(name)
     folder = path.parent / f'{next(NUMBER)}'

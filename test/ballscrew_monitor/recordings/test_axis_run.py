@@ -22,7 +22,7 @@ from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome, summary_of
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -185,7 +185,6 @@ def event_array(event, now, notes):
     return event_of(event, notes, axis=0, log_time=now, place=0)
 
 
-@settings(max_examples=30)
 @given(
     st.lists(
         st.tuples(

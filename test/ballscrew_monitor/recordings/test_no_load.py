@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, Temperature
-from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import find_sheet, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
 
@@ -34,8 +34,7 @@ CHANNELS = [
     speed_channel('joint_states', 'velocity[x_axis]', 'rad/s', LEAD),
     torque_channel('joint_states', 'effort[x_axis]', 1.0),
 ]
-SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-OPENED = Contacts.of(SCREW)
+OIL = load_lubricant('iso_vg_68')
 
 
 def speeds(*plateaus):
@@ -181,14 +180,25 @@ def test_a_bag_without_what_is_asked_for_or_without_its_fields_is_refused(
 def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     """From messages to the datasheet: known torque, noise, both directions, a restless start."""
     speed = speeds(*(sign * rpm * math.pi / 30 for sign in (1, -1) for rpm in PLATEAUS))
-    contacts = closed_form.solve(OPENED, OIL, np.abs(speed), 0.0, 313.15).friction_torque
+    sheet = tmp_path / 'smooth.yaml'  # no onset of contact is looked for
+    sheet.write_text(find_sheet('nominal', 'screws').read_text().replace('0.12\n', '0.0\n'))
+    opened = Contacts.of(load_screw(str(sheet)))
+    amounts, places = np.unique(np.abs(speed).round(9), return_inverse=True)
+    contacts = closed_form.solve(opened, OIL, amounts, 0.0, 313.15).friction_torque[places]
     drag = np.sign(speed) * (contacts + 0.12) + 4e-4 * speed + 0.03
     noise = 0.01 * np.random.default_rng(6).standard_normal(len(speed))
     inertia = 2e-3 * np.gradient(speed) * RATE
     write(tmp_path / 'bag', speed, drag + noise + inertia, warmth=40.0 + 0 * speed)
     words = ['identify', str(tmp_path / 'bag'), '--out', str(tmp_path / 'found.yaml'), '--json']
     topics = ['--speed-topic', 'joint_states', '--speed-field', 'velocity[x_axis]']
-    topics += ['--torque-field', 'effort[x_axis]', '--temperature-topic', 'oil']
+    topics += [
+        '--screw',
+        str(sheet),
+        '--torque-field',
+        'effort[x_axis]',
+        '--temperature-topic',
+        'oil',
+    ]
     assert cli.main(words + topics) == 0
     record = json.loads(capsys.readouterr().out)
     values = {one['name']: one for one in record['parameters']}
@@ -201,5 +211,5 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     words = ['point', '--tier', 'closed_form', '--speed-rpm', '600', '--load-N', '0', '--json']
     assert cli.main([*words, '--screw', str(tmp_path / 'found.yaml')]) == 0
     found = json.loads(capsys.readouterr().out)['friction_torque_Nm']
-    bare = float(closed_form.solve(OPENED, OIL, point.speed, 0.0, 313.15).friction_torque)
+    bare = float(closed_form.solve(opened, OIL, point.speed, 0.0, 313.15).friction_torque)
     assert found == pytest.approx(bare + 0.12 + 4e-4 * point.speed, rel=0.01)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judged rows as a recording would give them, without a recording, and a real browser."""
 
+import contextlib
 import dataclasses
 import functools
 import shutil
@@ -14,6 +15,7 @@ from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, 
 from ballscrew_monitor.judge.many import ROW
 from ballscrew_monitor.recordings.axis_run import AxisRows
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
+from ballscrew_monitor.report import many_logs
 from ballscrew_monitor.report.judging import CaseMaker, LogCase
 from ballscrew_monitor.report.parameters import AxisFacts
 from ballscrew_monitor.report.row_table import RowTable
@@ -23,6 +25,7 @@ from ballscrew_msgs.msg import Totals
 import numpy as np
 import pytest
 from surrogate.surface import Regime
+from surrogate.tasks.workers import open_pool
 from surrogate.units import TURN
 
 BEGIN = 1_767_600_000 * SECOND
@@ -30,6 +33,18 @@ BEGIN = 1_767_600_000 * SECOND
 AXIS_FACTS = {field.name for field in dataclasses.fields(AxisFacts)}
 DEADLINE = 600.0  # [s] which only ends a hang
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+
+
+@pytest.fixture(scope='session')
+def warm_pool():
+    with open_pool(1) as pool:
+        yield pool
+
+
+@pytest.fixture
+def one_worker(warm_pool, monkeypatch):
+    """Let commands share a worker, whose start takes longer than its work."""
+    monkeypatch.setattr(many_logs, 'open_pool', lambda *_, **__: contextlib.nullcontext(warm_pool))
 
 
 @pytest.fixture
@@ -204,8 +219,8 @@ def judged(tmp_path_factory):
 
 
 @pytest.fixture(scope='session')
-def half_hour(judged):
-    """Return half an hour at 1 kHz with 60 long events and a measured torque."""
+def five_minutes(judged):
+    """Return five minutes at 1 kHz with 60 events and a measured torque."""
     noise = np.random.default_rng(1)
     rows = 30_000
 
@@ -223,7 +238,7 @@ def half_hour(judged):
         )
 
     events = [
-        make_event(n + 1, 30.0 * n + 5.0, 20.0, worst_value=0.011 + 0.001 * n) for n in range(60)
+        make_event(n + 1, 5.0 * n + 1.2, 2.4, worst_value=0.011 + 0.001 * n) for n in range(60)
     ]
     values = make_values(**{'x.torque.topic': 'torque', 'x.torque.field': 'data'})
-    return judged.case([block(number) for number in range(60)], events, values=values)
+    return judged.case([block(number) for number in range(10)], events, values=values)

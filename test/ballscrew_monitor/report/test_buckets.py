@@ -150,8 +150,8 @@ def courses_of(page):
     return [axis['course'] for axis in json.loads(data)['axes']]
 
 
-def test_a_page_of_half_an_hour_at_1_khz_is_small(judged, half_hour):
-    page = report_page(judged.log(half_hour))
+def test_a_page_of_minutes_at_1_khz_is_small(judged, five_minutes):
+    page = report_page(judged.log(five_minutes))
     assert len(page.encode()) < MOST_BYTES
     assert courses_of(page)[0]['shown'] == 50
 

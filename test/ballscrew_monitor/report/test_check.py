@@ -19,6 +19,7 @@ from surrogate.parameters import find_sheet, load_lubricant, load_screw
 from surrogate.surface import shipped_surface
 from surrogate.surface.file import read
 
+pytestmark = pytest.mark.usefixtures('one_worker')
 SPEEDS = [20.0, 40.0, 60.0, 80.0, 100.0]
 QUICK = ['--tier', 'closed_form', '--workers', '1']
 SHEETS = ['--screw', 'nominal', '--oil', 'iso_vg_68']

@@ -119,6 +119,7 @@ def test_what_serves_no_recording_is_bad_input_at_once(logs, option, tmp_path, c
 
 
 @pytest.mark.parametrize('more', [[], ['--out']])
+@pytest.mark.usefixtures('one_worker')
 def test_a_folder_of_one_recording_is_json_by_recording(short_bag, more, tmp_path, capsys):
     folder = tmp_path / 'folder'
     shutil.copytree(short_bag, folder / 'bag')
@@ -127,6 +128,7 @@ def test_a_folder_of_one_recording_is_json_by_recording(short_bag, more, tmp_pat
     assert list(json.loads(capsys.readouterr().out)) == [str(folder / 'bag')]
 
 
+@pytest.mark.usefixtures('one_worker')
 def test_a_folder_of_bags_and_tables_is_judged_with_a_map_and_without(logs, tmp_path, capsys):
     (logs / 'broken.mcap').unlink()
     table, mapping, out = logs / 'log.csv', tmp_path / 'map.yaml', tmp_path / 'out'

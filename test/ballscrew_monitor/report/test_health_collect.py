@@ -164,14 +164,19 @@ def test_what_was_stopped_between_two_axes_is_collected_again(collected, tmp_pat
     assert not health_collect.is_complete(first, known)
 
 
-@pytest.mark.parametrize('damage', ['cut', 'text', 'empty', 'no facts', 'facts'])
-def test_a_damaged_entry_hides_only_itself(tmp_path, damage, capsys):
-    folder = tmp_path / 'kept'
+@pytest.fixture(scope='module')
+def two_days(tmp_path_factory):
+    """Return a folder into which the logs of two days were collected."""
+    base = tmp_path_factory.mktemp('two_days')
     for day in (5, 6):
-        log, mapping = write_log(
-            tmp_path / 'logs' / f'{day}.csv', epoch=f'2026-01-0{day}T06:00:00Z'
-        )
-        collect([log], folder, Given(None, mapping, NOMINAL), Workers())
+        log, mapping = write_log(base / 'logs' / f'{day}.csv', epoch=f'2026-01-0{day}T06:00:00Z')
+        collect([log], base / 'kept', Given(None, mapping, NOMINAL), Workers())
+    return base / 'kept'
+
+
+@pytest.mark.parametrize('damage', ['cut', 'text', 'empty', 'no facts', 'facts'])
+def test_a_damaged_entry_hides_only_itself(two_days, tmp_path, damage):
+    folder = shutil.copytree(two_days, tmp_path / 'kept')
     bad, good = sorted(folder.rglob('*.parquet'))
     frame = pl.read_parquet(bad)
     if damage == 'cut':
@@ -277,10 +282,11 @@ def test_the_command_needs_logs_and_a_place(capsys, says):
     assert [line.partition(': ')[2] for line in lines] == [says('collect_needs')] * 2
 
 
-@pytest.fixture
-def two_machines(tmp_path):
+@pytest.fixture(scope='module')
+def two_machines(tmp_path_factory):
     """Return a folder with weeks of logs of two machines, collected, and the logs."""
-    folder, logs = tmp_path / 'kept', tmp_path / 'logs'
+    base = tmp_path_factory.mktemp('two_machines')
+    folder, logs = base / 'kept', base / 'logs'
     for machine in ('mill 3', 'mill 4'):
         for week in range(8):
             day = datetime.date(2026, 1, 5) + datetime.timedelta(weeks=week)
@@ -303,12 +309,16 @@ def test_an_axis_without_dates_is_not_known_and_stops_no_other_one(two_machines,
     assert 'axis x of mill 4: 8 of 8 logs begin at the same instant' in captured.err
 
 
-def test_collected_logs_and_logs_named_are_assessed_alike(two_machines, capsys):
+def test_collected_logs_and_logs_named_are_assessed_alike(two_machines, tmp_path, capsys):
     folder, logs = two_machines
     assert main(['health', str(folder), '--json']) == 0
     kept = json.loads(capsys.readouterr().out)['x of mill 3']
-    mapping = next((logs / '3').glob('*.yaml'))
-    text = mapping.read_text().replace('time: {', 'date_from: name\ntime: {')
+    text = (
+        next((logs / '3').glob('*.yaml'))
+        .read_text()
+        .replace('time: {', 'date_from: name\ntime: {')
+    )
+    mapping = tmp_path / 'map.yaml'
     mapping.write_text(re.sub(', epoch: [^}]*', '', text))
     assert main(['health', str(logs / '3'), '--map', str(mapping), '--json']) == 0
     named = json.loads(capsys.readouterr().out)['x']

@@ -256,6 +256,7 @@ def test_a_share_beyond_all_is_refused(tmp_path, capsys, share, says):
     assert says('most_unjudged', share=share) in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures('one_worker')
 def test_reports_of_one_and_of_many_hold_the_ledger_and_the_exit_code(tmp_path, capsys):
     bag, params = write(tmp_path / 'logs' / 'bag', motion(range(200))), tmp_path / 'params.yaml'
     params.write_text("/**/ballscrew_monitor: {ros__parameters: {axes: ['x']}}\n")

@@ -96,6 +96,7 @@ def test_a_bag_that_was_imported_knows_the_machine_of_its_map(logs, capsys):
     assert (record['machine'], len(record['course'])) == ('mill 3', 2)
 
 
+@pytest.mark.usefixtures('one_worker')
 def test_the_overview_tells_machines_apart(logs, says, tmp_path):
     names = logs('mill/one.csv', 'lathe/one.csv')
     main(['replay', *names, '--map', 'map.yaml', '--out', 'out', '--workers', '1'])

@@ -18,17 +18,17 @@ def rows_of(case, *numbers):
     return case.row_table.collect(lambda part: part.select(*row_columns(case, numbers)))
 
 
-def test_around_the_worst_events_every_sample_is_kept_where_there_is_room(half_hour):
-    record = series_record(half_hour)
+def test_around_the_worst_events_every_sample_is_kept_where_there_is_room(five_minutes):
+    record = series_record(five_minutes)
     assert record['shown'] == 50
-    worst = half_hour.worst_first[:50]
+    worst = five_minutes.worst_first[:50]
     assert min(event.event_id for event in worst) == 11  # the last ones are the worst
     for event in worst:
-        for end in (half_hour.since_first(event.start), half_hour.since_first(event.end)):
+        for end in (five_minutes.since_first(event.start), five_minutes.since_first(event.end)):
             inside = [one for one in record['fine'] if one['begin'] <= end <= one['end']]
             assert len(inside) == 1
             assert inside[0]['count'] == 2000
-    record = series_record(half_hour, 1_000_000)
+    record = series_record(five_minutes, 1_000_000)
     assert 5 < record['shown'] < 50
     assert (
         sum(len(one['columns'][key]['data']) for one in record['fine'] for key in one['columns'])
@@ -79,10 +79,10 @@ def test_only_the_worst_events_are_shaded(judged):
     assert min(one['begin'] for one in shaded) == pytest.approx(2.0)
 
 
-def test_torque_has_a_panel_where_it_was_measured_and_oil_is_in_degc(judged, half_hour):
+def test_torque_has_a_panel_where_it_was_measured_and_oil_is_in_degc(judged, five_minutes):
     titles = [panel['title'] for panel in series_record(judged.case([judged.rows()]))['panels']]
     assert len(titles) == 6
-    assert series_record(half_hour)['panels'][-1]['title'].startswith('Torque')
+    assert series_record(five_minutes)['panels'][-1]['title'].startswith('Torque')
     block = judged.rows(count=2)
     rows = rows_of(judged.case([block]), 'temperature')
     assert rows['temperature'].to_list() == pytest.approx([40.0, 40.0])

@@ -96,7 +96,7 @@ def test_below_half_of_what_may_be_motion_nothing_is_good_and_it_is_said_why(jud
 
 
 @given(*[st.integers(60, 400)] * 3, st.integers(0, 400))
-@settings(max_examples=40)
+@settings(max_examples=settings.default.max_examples // 3)
 def test_good_needs_half_of_the_recording_but_for_standstill(judged, first, gap, last, still):
     verdict = rows(judged, first, gap, last, still=still)
     whole, known = first + gap + last, first + last

@@ -316,7 +316,7 @@ ROW = st.tuples(st.integers(1, 100_000), *[FINITE] * 4)
 
 
 @given(first=st.tuples(st.just(0), *[FINITE] * 4), others=st.lists(ROW, min_size=1))
-@settings(max_examples=25)
+@settings(max_examples=settings.default.max_examples // 3)
 def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
     """Rows of steps [ms], gaps among them."""
     steps, *columns = zip(first, *others)
@@ -356,7 +356,7 @@ def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
 
 
 @given(rows=st.lists(st.tuples(*[st.none() | FINITE] * 3), min_size=3, max_size=20))
-@settings(max_examples=25)
+@settings(max_examples=settings.default.max_examples // 3)
 def test_an_empty_cell_is_no_sample(rows):
     """A bag holds the cells that are filled, at their times and in their order, and no others."""
     filled = {'v': [float(at) for at in range(len(rows))], **dict(zip('FTM', zip(*rows)))}

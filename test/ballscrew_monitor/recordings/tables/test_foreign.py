@@ -19,21 +19,11 @@ import polars as pl
 import pytest
 import scipy.io
 
+pytestmark = pytest.mark.usefixtures('in_this_process')
 COUNT, STEP = 400, 0.002
 TIME = np.arange(COUNT) * STEP
 SPEED = 90.0 * np.sin(math.tau * TIME)  # [mm/s]
 PLACE = 150.0 + 90.0 / math.tau * (1.0 - np.cos(math.tau * TIME))  # [mm]
-
-
-@pytest.fixture(autouse=True)
-def in_this_process(monkeypatch):
-    """Let readers work here, where their libraries are loaded."""
-
-    def result(task, inputs, *, memory, failure):
-        module, _, name = task.partition(':')
-        return getattr(sys.modules[module], name)(inputs)
-
-    monkeypatch.setattr(apart, 'result_apart', result)
 
 
 def sinumerik_json(path):

@@ -127,7 +127,7 @@ SLOWLY_WARM = [*[(1, *[None] * 5)] * 14, (1, *[None] * 4, 10.0), (400, *[None] *
 )
 @example(axes=MAPS[2], rows=[(0, *MOVED[1:])] * 9, block=3, events=7)
 @example(axes=MAPS[1], rows=HOLE_AFTER_A_PLACE, block=1, events=1)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=settings.default.max_examples // 3)
 def test_a_table_and_the_bag_of_it_are_judged_to_the_same_bits(axes, rows, block, events):
     """Steps are of zero and of more than a minute, and any cell may be empty."""
     rows = [WHOLE, MOVED, *rows, *[MOVED] * len(rows)]  # most times rise
@@ -242,7 +242,7 @@ def by_run(log, values):
     block=st.sampled_from([7, 1000]),
 )
 @example(axes=MAPS[2], rows=SLOWLY_WARM, runs=2, block=7)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=settings.default.max_examples // 6)
 def test_each_run_is_judged_as_if_it_were_alone(axes, rows, runs, block):
     """Its rows are bit for bit those of a log of this run, as a table and as the bag of it."""
     rows = [WHOLE, MOVED, *rows, *[MOVED] * len(rows)]

@@ -60,10 +60,9 @@ def read(path):
     return read_series(path, make_map(mapping))
 
 
-@pytest.mark.parametrize('separator', SEPARATORS)
+@pytest.mark.parametrize(('separator', 'rate'), [(';', 50.0), ('tab', 1000.0), (',', 50.0)])
 @pytest.mark.parametrize('head', HEADS)
 @pytest.mark.parametrize('below', BELOW)
-@pytest.mark.parametrize('rate', [50.0, 1000.0])
 def test_a_table_below_a_log_is_named_and_never_read(tmp_path, separator, head, below, rate):
     if below == 'alarms' and head == 'none':
         return  # rows after a pause, which nothing parts from the log

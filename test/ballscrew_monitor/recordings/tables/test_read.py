@@ -10,7 +10,7 @@ import tempfile
 from ballscrew_monitor.recordings.tables import cells, read, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.read import column_names, look_through, open_table
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import polars as pl
@@ -317,6 +317,7 @@ def looked_through(path, tries):
         return columns, readings, table.notes, table.doubts, table.left_out, table.decision
 
 
+@settings(max_examples=settings.default.max_examples // 2)
 @given(
     first=st.lists(st.tuples(st.sampled_from(PLAIN), st.sampled_from(PLAIN)), min_size=3),
     rest=st.lists(st.tuples(st.sampled_from(PLAIN), st.sampled_from(ODD)), max_size=12),

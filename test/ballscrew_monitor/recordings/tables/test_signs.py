@@ -16,7 +16,7 @@ from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import read_series
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -95,7 +95,6 @@ VALUES = st.lists(
 
 
 @given(VALUES, st.sampled_from('.,'), st.sampled_from(';\t,'), st.integers(0, 4), st.booleans())
-@settings(max_examples=100)
 def test_no_number_is_another_one(values, sign, separator, digits, parted):
     """It is right, unknown or refused; once the sign is stated it is right."""
     columns = {

@@ -16,7 +16,7 @@ from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.time_gate import AGAIN, TimeGate
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 import numpy as np
 import openpyxl
@@ -320,7 +320,6 @@ def outcome(name, text, rate, *, appended=False):
 
 @given(st.sampled_from(FORMS), st.floats(-1.0, 3.7), st.booleans())
 @example(('Time', UNSTATED['days of a sheet']), 0.0, False)
-@settings(max_examples=120)
 def test_in_whatever_form_a_time_stands_the_rate_is_right_or_refused(form, decade, appended):
     rate = 10**decade
     found = outcome(*form, rate, appended=appended)

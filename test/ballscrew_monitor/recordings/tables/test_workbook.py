@@ -19,7 +19,9 @@ import openpyxl
 import polars as pl
 import pytest
 from surrogate.files import limits
+from surrogate.tasks.child import result_apart
 
+pytestmark = pytest.mark.usefixtures('in_this_process')
 ROWS = [('t', 'v'), ('0', '3'), ('0.1', '4'), ('0.2', '5')]
 FAR = '<row r="1048576"><c r="Z1048576"><v>1</v></c></row>'
 FORMS = {
@@ -163,6 +165,7 @@ def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(
 
 
 def test_a_reader_that_needs_too_much_memory_is_a_sentence(book, refused, monkeypatch):
+    monkeypatch.setattr(apart, 'result_apart', result_apart)
     monkeypatch.setattr(limits, 'MEMORY', 1000)
     refused('memory', read_sheet, book())
 

@@ -158,7 +158,7 @@ def check(path):
         np.testing.assert_allclose((stamps - stamps[0]) / 1e9, TIMES, atol=1e-4)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(
     cells=st.sampled_from(list(CELLS)),
     form=st.sampled_from(list(FORMS)),
