@@ -165,17 +165,24 @@ def friction(month: Month, speed: Array, load: Array, oil: Array) -> Array:
     |w| [rad/s], |load| [N], oil [degC]; solved at nodes, cubic between them.
 
     """
+    between = _frictions(month.preload, month.oil)
+    return np.asarray(between(np.stack([np.arcsinh(speed / SLOWEST), load, oil], axis=-1)))
+
+
+@functools.cache
+def _frictions(preload: float, oil: str) -> RegularGridInterpolator:
+    """Solve at the nodes, with raceways that have run in under the preload of the datasheet."""
     screw = load_screw(SCREW)
+    loosened = dataclasses.replace(screw, preload=preload * screw.preload)
     solved = closed_form.solve(
-        Contacts.of(dataclasses.replace(screw, preload=month.preload * screw.preload)),
-        load_lubricant(month.oil),
+        Contacts.of(loosened).with_law(Contacts.of(screw).law),
+        load_lubricant(oil),
         np.maximum(SLOWEST * np.sinh(SPEED_NODES), SLOWEST)[:, None, None],
         LOAD_NODES[None, :, None],
         OIL_NODES[None, None, :] + ZERO_CELSIUS,
     )
     axes = SPEED_NODES, LOAD_NODES, OIL_NODES
-    between = RegularGridInterpolator(axes, solved.friction_torque, method='cubic')
-    return np.asarray(between(np.stack([np.arcsinh(speed / SLOWEST), load, oil], axis=-1)))
+    return RegularGridInterpolator(axes, solved.friction_torque, method='cubic')
 
 
 def torque_of(month: Month, motion: Motion) -> Array:

@@ -18,9 +18,10 @@ REGIMES = ('UNKNOWN', 'BOUNDARY', 'MIXED', 'HYDRODYNAMIC')
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Judgement:
-    """Every state as a row of names and numbers, the cause of each event, totals, last inputs."""
+    """Every state as a row of names and numbers, events and their causes, totals, last inputs."""
 
     rows: list
+    events: list
     causes: dict
     summary: Summary
     inputs: dict
@@ -33,19 +34,21 @@ def judge():
 
 
 def _judge(bag, parameters):
-    rows, causes, inputs = [], {}, {}
+    rows, events, causes, inputs = [], [], {}, {}
 
     def said():
         for state, event in replay(Bag(bag), read_file(parameters)):
             yield state
             if event is not None:
                 yield event
+                events.append(event)
                 causes[event.event_id] = Code(event.cause.code).name
             rows.append(_row(state))
             for health in state.inputs:
                 inputs[health.name] = health.state, health.dropped, health.received, health.lag
 
-    return Judgement(summary=summary_of(said()), rows=rows, causes=causes, inputs=inputs)
+    summary = summary_of(said())
+    return Judgement(summary=summary, rows=rows, events=events, causes=causes, inputs=inputs)
 
 
 def _row(state):

@@ -25,7 +25,6 @@ from surrogate.units import RPM
 
 ROOT = Path(__file__).resolve().parents[2]
 TINY = 1e-9
-NOMINAL = 'nominal_cycle'
 ADVICE = r'at this load run at [\d.]+ rev/min'
 
 
@@ -159,39 +158,54 @@ def test_without_a_name_all_are_named(capsys):
     assert capsys.readouterr().out.splitlines()[0].startswith('warm_up ')
 
 
+@pytest.fixture(scope='module')
+def log_of(judged):
+    """Return what gives the judged log of a scenario, each of them made once."""
+
+    @cache
+    def of(name):
+        judged(name)
+        bag = Bag(judged.folder / name)
+        parameters = parameters_for(bag, bag.path / PARAMETERS, ROOT / 'config' / 'none.yaml')
+        return judge_log(bag, parameters)
+
+    return of
+
+
 @pytest.mark.parametrize('name', SCENARIOS)
-def test_no_input_of_a_scenario_is_accused_of_contradicting_the_others(judged, name):
+def test_no_input_of_a_scenario_is_accused_of_contradicting_the_others(log_of, name):
+    assert {case.axis: case.balance for case in log_of(name).axes} == {'x': Balance()}
+
+
+@pytest.mark.parametrize('name', SCENARIOS)
+def test_neither_a_load_nor_a_speed_is_advised_unless_the_process_leaves_it_free(
+    judged, log_of, name
+):
+    """Neither in a message nor in a report."""
+    assert not any(advice for _, _, advice in advised(judged(name).events, log_of(name)))
+
+
+@pytest.mark.parametrize('name', ['warm_up', 'flapping'])
+def test_a_speed_is_advised_where_the_process_leaves_it_free(judged, name):
+    """Contact ends at some speed in each scenario with a warning of it."""
     judged(name)
     bag = Bag(judged.folder / name)
-    log = judge_log(bag, parameters_for(bag, bag.path / PARAMETERS, ROOT / 'config' / 'none.yaml'))
-    assert {case.axis: case.balance for case in log.axes} == {'x': Balance()}
+    values = read_file(bag.path / PARAMETERS) | {'x.advice.speed': True}
+    events = [event for _, event in replay(bag, values) if event is not None]
+    said = advised(events, judge_log(bag, LogParameters(values=values, origin='mine')))
+    assert said
+    for in_contact, _, advice in said:
+        assert re.fullmatch(ADVICE, advice) if advice else not in_contact
 
 
-@pytest.fixture(params=[NOMINAL, *SCENARIOS])
-def bag_and_values(request, judged, nominal_bag):
-    """Return the bag of each scenario and the parameters that it is judged with."""
-    if request.param == NOMINAL:
-        return Bag(nominal_bag), read_file(ROOT / 'config' / 'nominal_cycle.yaml')
-    judged(request.param)
-    bag = Bag(judged.folder / request.param)
-    return bag, read_file(bag.path / PARAMETERS)
-
-
-@pytest.mark.parametrize('free', [False, True])
-def test_no_load_is_advised_and_a_speed_only_where_the_process_leaves_it_free(
-    bag_and_values, free
-):
-    """Neither in a message nor in a report; contact ends at some speed in each scenario."""
-    bag, values = bag_and_values
-    values = values | {'x.advice.speed': free}
-    told = [event for _, event in replay(bag, values) if event is not None]
-    log = judge_log(bag, LogParameters(values=values, origin='mine'))
+def advised(events, log):
+    """Return of all warnings: is it of contact, the speed to run at [rad/s], the advice."""
     (case,) = log.axes
-    said = [(one.cause.code == Code.RCS_HIGH, one.cause.target_speed, one.advice) for one in told]
+    said = [
+        (one.cause.code == Code.RCS_HIGH, one.cause.target_speed, one.advice) for one in events
+    ]
     said += [(one.quantity == RCS, one.target_speed, one.advice) for one in case.outcome.events]
-    for in_contact, speed, advice in said:
-        assert bool(advice) is math.isfinite(speed)
-        assert re.fullmatch(ADVICE, advice) if advice else not (free and in_contact)
-        assert free or not advice
-    assert all(math.isnan(one.cause.target_load) for one in told)
+    assert all(bool(advice) is math.isfinite(speed) for _, speed, advice in said)
+    assert all(math.isnan(one.cause.target_load) for one in events)
     assert 'load with' not in '\n'.join(log_lines(log))
+    return said

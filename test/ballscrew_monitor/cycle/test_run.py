@@ -156,16 +156,20 @@ def what_was_judged(state):
     return (stamp_of(state), state.judged), str(state.point), str((state.zone, state.result))
 
 
-def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path, bound_addresses, is_alive):
-    with running(nominal_bag, tmp_path / 'out') as (process, node):
+def test_an_interrupt_ends_everything_in_order(
+    short_bag, nominal_bag, tmp_path, bound_addresses, is_alive, refused
+):
+    out = tmp_path / 'out'
+    with running(nominal_bag, out) as (process, node):
+        refused('use_by_another', run, plan(short_bag, PARAMS, out, 1.0))
         for pid in (process.pid, node):  # nothing that another machine could reach
             assert {address for address, _ in bound_addresses(pid)} == {'127.0.0.1'}
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
         _, errors = process.communicate(timeout=DEADLINE)
-    assert process.returncode == 130
+    assert process.returncode == 128 + signal.SIGTERM
     assert errors.startswith('ballscrew: interrupted')
     assert not is_alive(node)
-    recorded = Bag(tmp_path / 'out')
+    recorded = Bag(out)
     list(recorded.messages())
     assert recorded.topics[STATE].count >= 1
 
@@ -253,15 +257,6 @@ def test_bad_input_is_one_sentence_at_once(short_bag, tmp_path, change, expected
 
 def test_the_bag_is_not_overwritten_by_its_recording(finished, refused):
     refused('would_overwritten', plan, finished[0], PARAMS, finished[0], 1.0)
-
-
-def test_two_runs_do_not_share_a_directory(short_bag, nominal_bag, tmp_path, refused):
-    out = tmp_path / 'out'
-    with running(nominal_bag, out) as (process, _):
-        refused('use_by_another', run, plan(short_bag, PARAMS, out, 1.0))
-        process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=DEADLINE)
-    assert process.returncode == 128 + signal.SIGTERM
 
 
 def test_of_a_damaged_bag_what_is_whole_is_to_be_judged(short_bag, tmp_path):

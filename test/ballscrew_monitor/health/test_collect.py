@@ -66,7 +66,7 @@ def restless(motion, seed, parts):
     return motion.then(*made, after=int(after))
 
 
-@settings(max_examples=20)
+@settings(max_examples=settings.default.max_examples // 5)
 @given(seed=st.integers(0, 10**6), cuts=st.lists(st.integers(0, 1800), max_size=4).map(sorted))
 def test_both_ways_give_the_same_bits(motion, surface, seed, cuts):
     rows = restless(motion, seed, 6)

@@ -162,11 +162,11 @@ def test_a_loss_of_a_tenth_is_found_within_eight_weeks_with_its_size_and_date():
 def test_the_smallest_loss_is_found_in_nine_of_ten():
     """Years whose friction falls by the loss that the axis stated the week before."""
     found, plan = 0, {'scatter': 0.015, 'swing': 4.0}
-    for seed in range(300, 320):
+    for seed in range(300, 310):
         before = list(looks(year(np.random.default_rng(seed), weeks=26, **plan)))
         lost = year(np.random.default_rng(seed), loss=before[-1].smallest, weeks=34, **plan)
         found += any(one.raised < 0 for one in looks(lost))
-    assert found >= 16
+    assert found >= 8
 
 
 def test_fresh_grease_passes_and_is_no_change():

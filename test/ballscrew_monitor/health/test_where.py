@@ -94,7 +94,7 @@ def ratios(quantities):
     }
 
 
-@pytest.mark.parametrize('seed', range(8))
+@pytest.mark.parametrize('seed', range(4))
 def test_a_worn_place_is_told_where_it_is(seed):
     year, quantities, (note,) = told(seed, FAULTS['worn place'])
     worn = WORN_AT * year.machine.stroke * 1e3
@@ -107,7 +107,7 @@ def test_a_worn_place_is_told_where_it_is(seed):
 @pytest.mark.parametrize('fault', ['clean', 'preload -20 %', 'starved film', 'wiper swollen'])
 def test_a_change_of_the_whole_stroke_is_no_place(fault):
     held, steps = 0, 0
-    for seed in range(6):
+    for seed in range(6 if fault == 'clean' else 2):
         _, quantities, notes = told(seed, FAULTS[fault])
         assert notes == []
         assert len(quantities) >= 5
@@ -117,7 +117,7 @@ def test_a_change_of_the_whole_stroke_is_no_place(fault):
         assert held >= 0.9 * steps
 
 
-@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize('seed', range(2))
 def test_play_that_grows_is_told_with_its_size(seed):
     _, quantities, notes = told(seed, FAULTS['play 20 um'], scale=True)
     found = {one.name: one for one in quantities}
@@ -127,7 +127,7 @@ def test_play_that_grows_is_told_with_its_size(seed):
     assert sum('the lost motion at reversals has grown by' in note for note in notes) == 1
 
 
-@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize('seed', range(2))
 def test_play_that_grows_counts_from_its_date_on(seed):
     """Begun at a day of the year; of a date long after it, the play was there before."""
     year = axis_year(seed, replace(FAULTS['play 20 um'], ramp=0.0), scale=True)

@@ -10,7 +10,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge.views import refused_of
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 from surrogate.surface import shipped_surface, Surface
@@ -72,7 +72,6 @@ def test_each_edge_of_each_input_is_judged_or_refused(make_monitor, way, source)
         assert (refused == 2) is not math.isfinite(value), value
 
 
-@settings(max_examples=200)
 @given(
     st.sampled_from(list(WAYS)),
     st.lists(

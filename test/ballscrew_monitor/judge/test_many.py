@@ -190,7 +190,7 @@ def events_of(happenings, positions):
 
 
 @pytest.mark.parametrize('way', WAYS)
-@settings(max_examples=60)
+@settings(max_examples=settings.default.max_examples * 3 // 10)
 @given(HAPPENINGS, st.booleans(), st.sampled_from([0, 2 * STEP]))
 def test_whatever_happens_comes_out_the_same(way, happenings, usual, period):
     """In blocks of a few events and memories; `usual` inputs come before the odd ones."""
@@ -308,7 +308,7 @@ def test_a_memory_has_the_fields_of_its_slots():
     temperature=st.floats(280.0, 360.0),
     efficiency=st.sampled_from([0.5, 0.85, 0.95]),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=settings.default.max_examples * 3 // 10)
 def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
     limits = dataclasses.replace(LIMITS, efficiency=efficiency)
     point = {'speed': speed, 'axial_load': load, 'temperature': temperature}

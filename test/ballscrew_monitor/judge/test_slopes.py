@@ -15,7 +15,7 @@ from ballscrew_monitor.judge.slopes import (
     slope_take,
     SlopeRing,
 )
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -112,7 +112,6 @@ def test_the_largest_difference_still_has_a_slope(sign):
         assert slope_of(ring) == pytest.approx(slope, nan_ok=True)
 
 
-@settings(max_examples=100)
 @given(SAMPLES)
 def test_compiled_it_has_the_same_bits(steps):
     pytest.importorskip('numba')

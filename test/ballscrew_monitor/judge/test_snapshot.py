@@ -14,7 +14,7 @@ from ballscrew_monitor.core.state import Ending, LoadDerivation, Shelving
 from ballscrew_monitor.judge.records import Memory, MEMORY_LAYOUT
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.snapshot import restored, snapshot
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
@@ -75,7 +75,6 @@ def streams(draw):
     return made
 
 
-@settings(max_examples=200)
 @given(streams(), st.booleans(), st.data())
 def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, data):
     surface = core.surface(rcs=lambda speed, load: 0.5 if speed < 20.0 else 0.0)

@@ -20,7 +20,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rclpy.serialization import deserialize_message
 
-KILLS = 3
+KILLS = 2
 DAYS = 54
 WARM = 313.15  # [K]
 SPEEDS = 3.0, 12.0, 40.0, 100.0

@@ -30,7 +30,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
-KILLS = 3
+KILLS = 2
 AT_ONCE = {'x__max_future': 3600.0, 'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
 
 

@@ -191,9 +191,7 @@ def test_the_lifecycle_from_outside(node, says):
     ('name', 'value', 'reason'),
     [
         ('x__surface', '/no/such/file.npz', '/no/such/file.npz'),
-        ('x__oil', 'olive', "'olive'"),
         ('x__speed__field', 'velocity', 'not a number'),
-        ('x__load__topic', '"no topic"', 'no topic name'),
         ('x__load__topic', 'joint_states', 'is configured as'),
     ],
 )
@@ -223,8 +221,7 @@ def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, says):
     assert said[0].startswith(f'ballscrew_monitor: {says("limits_rcs_7")}')
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize('times', [1, 2])
+@pytest.mark.parametrize(('number', 'times'), [(signal.SIGINT, 2), (signal.SIGTERM, 1)])
 def test_signals_end_the_node_cleanly(node, number, times):
     node.start(**AHEAD)
     publish = node.machine()
@@ -588,11 +585,11 @@ def test_a_long_answer_makes_no_input_missing(node):
     node.until(lambda: misses(node.stamp), 'a tick on simulated time')
     feed(node, publish, states, FAST, 1)
     states.clear()
-    points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
+    points = [OperatingPoint(speed=FAST, temperature=40.0)] * 4_000
     client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
     node.until(client.service_is_ready)
     request = EvaluateOperatingPoint.Request(axis='x', points=points)
-    answers = [client.call_async(request) for _ in range(4)]
+    answers = [client.call_async(request) for _ in range(3)]
     node.until(lambda: any(answer.done() for answer in answers), 'an answer')
     begin = node.stamp
     for _ in range(20):

@@ -3,7 +3,9 @@
 """The cases: each makes its outputs, texts and tables by name, in an empty folder."""
 
 import functools
+from unittest import mock
 
+from ballscrew_monitor.report import health_collect
 from golden import bags, doors, graph, inputs, live, tables
 
 
@@ -77,10 +79,12 @@ def health(folder):
     logs = inputs.months(folder / 'logs')
     out, reports = folder / 'health', folder / 'reports'
     given = ('--baseline', '2026-01-05', '2026-02-16')
-    kept = doors.command(folder, 'health', logs, *given, '--out', out, '--json')
+    with mock.patch.object(health_collect, 'FEW', inputs.PLAN.logs):  # in this process
+        kept = doors.command(folder, 'health', logs, *given, '--out', out, '--json')
+        words = doors.command(folder, 'health', logs)
     many = doors.command(folder, 'replay', logs, '--out', reports, '--workers', '1')
     return {
-        'words': doors.command(folder, 'health', logs),
+        'words': words,
         'json': kept,
         'file': doors.json_text(folder, out / 'health.json'),
         'many_said': many + doors.command(folder, 'replay', logs),
@@ -99,10 +103,21 @@ def page(folder):
     }
 
 
-def live_node(folder):
-    """Return what the node says in two runs, and what is left of them: kept and recorded."""
+def node_runs(folder):
+    """Return what the node says in two runs, its event log and the tables that it keeps."""
     outputs = {f'{name}_first': one for name, one in live.first_run(folder).items()}
     outputs |= {f'{name}_second': one for name, one in live.second_run(folder).items()}
+    state = folder / 'state'
+    return outputs | {
+        'events': doors.command(folder, 'events', state),
+        'events_json': doors.command(folder, 'events', state, '--json'),
+        'kept': live.kept(folder),
+    }
+
+
+def live_node(folder):
+    """Return what the node says in two runs, and what is left of them: kept and recorded."""
+    outputs = node_runs(folder)
     state, given = folder / 'state', ('--params', folder / 'node.yaml')
     recordings = sorted((state / 'recordings').iterdir())
     long, short = recordings[-2:]  # with and after all that happens; one before it is cut off
@@ -111,10 +126,7 @@ def live_node(folder):
     other = doors.command(folder, 'replay', short) + doors.command(folder, 'replay', long, *given)
     health = doors.command(folder, 'health', state, *given)
     return outputs | {
-        'events': doors.command(folder, 'events', state),
-        'events_json': doors.command(folder, 'events', state, '--json'),
         'health': health + doors.command(folder, 'health', state, *given, '--json'),
-        'kept': live.kept(folder),
         'recording_other': other,
     }
 
