@@ -6,7 +6,8 @@
 # Three workers for the two cores of the smallest machine that this is for: a quarter of the time of a
 # worker is waiting, for discovery and for children. Each has its share of the files until it helps
 # the others. `-n 0` runs all in one process. What ament_flake8 and ament_pep257 find, ruff finds in a
-# hundredth of the time; they run on machines with ROS 2, and by `-m linter` here.
+# hundredth of the time; they run on machines with ROS 2, and by `-m linter` here. Tests that are long by
+# their nature have a shorter sister, and run by `-m long` or in a job of their own.
 set -u
 cd "$(dirname "$0")/.."
 export ROS_PYTHON_CHECK_FIELDS=1
@@ -29,7 +30,7 @@ check ruff format --check --quiet --output-format concise
 [ -z "$failed" ] || echo "== failed:$failed"
 echo '== size'
 .venv/bin/python scripts/count.py --summary
-.venv/bin/pytest -q -n 3 --dist worksteal -m 'not flake8 and not pep257' "$@"
+.venv/bin/pytest -q -n 3 --dist worksteal -m 'not flake8 and not pep257 and not long' "$@"
 code=$?
 [ $code != 0 ] || [ -z "$failed" ] || code=1
 exit $code
