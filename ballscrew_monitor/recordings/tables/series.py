@@ -287,7 +287,7 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     alike = [one.gate for one in times if len(one.gate.runs) == runs]
     offsets, begins = run_offsets(alike, gap)
     for one in times:
-        one.place(offsets, [run.row for run in motion[0].gate.runs], begins)
+        one.place(offsets, motion[0], begins)
     begin = min(one.first for one in times)
     for one in times:
         one.since(begin)

@@ -109,11 +109,11 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`. `left_out` says why other sheets or arrays are not read, `more_rows` of which
-    are of the same columns, `lengths` how many cells columns of groups hold, `arrays` how many
-    those whose rows nothing but a time ties to others; `notes` say what is odd about it. Names of
-    a source that `is_grouped` begin with that of a group. `short` are the rows of too few cells
-    since it began.
+    is one `sheet`, whose days may count `from_1904`. `left_out` says why other sheets or arrays
+    are not read, `more_rows` of which are of the same columns, `lengths` how many cells columns of
+    groups hold, `arrays` how many those whose rows nothing but a time ties to others; `notes` say
+    what is odd about it. Names of a source that `is_grouped` begin with that of a group. `short`
+    are the rows of too few cells since it began.
 
     """
 
@@ -123,6 +123,7 @@ class Source:
     read: Read
     most: float = math.inf
     sheet: str = ''
+    from_1904: bool = False
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
     lengths: Mapping[str, int] = dataclasses.field(default_factory=dict)
@@ -421,6 +422,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     source = dataclasses.replace(
         source,
         sheet=sheet.name,
+        from_1904=sheet.from_1904,
         left_out=sheet.others,
         more_rows=sheet.more_rows,
         notes=tuple(notes[: sheet.hidden]),

@@ -331,7 +331,7 @@ def test_a_time_with_decimals_is_of_no_unit_until_one_is_stated(scale, guessed, 
 )
 def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
     made = guessed({name: TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
-    assert made.content['time'] == {'column': name, 'unit': unit}
+    assert made.content['time'] == {'column': name}
 
 
 @pytest.mark.parametrize(
@@ -390,7 +390,7 @@ def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
 )
 def test_days_are_those_of_their_epoch(name, zero, unit, guessed):
     made = guessed({name: zero + TIME / 86400.0, 'v_x [mm/s]': SPEED}, form='{:.12g}')
-    assert made.content['time'] == {'column': name, 'unit': unit}
+    assert made.content['time'] == {'column': name}
 
 
 def test_seconds_of_a_day_are_no_days(guessed):
@@ -642,7 +642,7 @@ def test_a_unit_that_is_so_many_of_another_is_read(name, unit, scale, read, tmp_
     columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: force}
     path = write_csv(tmp_path / 'log.csv', columns)
     made = guess(path)
-    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale, 'unit': unit}
+    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale}
     assert not made.unstated
     (rows,) = [rows for (rows,) in read_series(path, make_map(made.content)).blocks()]
     assert rows.columns[f'x.{read}'] == pytest.approx(force * scale, abs=1e-2)
@@ -684,7 +684,7 @@ def test_a_part_of_a_rated_torque_is_offered_as_one_of_its_per_cent(unit, guesse
 )
 def test_the_unit_tells_what_a_torque_or_an_effort_is(name, kind, unit, guessed):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: 9.0 * SPEED})
-    assert made.content['axes']['x'][kind] == {'column': name, 'unit': unit}
+    assert made.content['axes']['x'][kind] == {'column': name}
 
 
 def test_an_axis_in_brackets_is_no_unit(guessed):
@@ -1056,3 +1056,21 @@ def test_a_torque_of_another_group_has_the_signs_of_all_its_rows(rate, tmp_path,
     result = guess(log)
     assert 'magnitude' not in result.content['axes']['x']['torque']
     assert read_series(log, make_map(result.content))
+
+
+@pytest.mark.parametrize(
+    ('least', 'unit'),
+    [(-30.0, 'degC'), (35.0, 'degC'), (293.0, 'K'), (-90.0, None), (180.0, None)],
+)
+def test_the_unit_of_a_temperature_is_said_or_asked_for_if_no_oil_has_it(
+    least, unit, guessed, says
+):
+    column = 'x oil temperature'
+    warmth = least + 30.0 * np.linspace(0.0, 1.0, len(TIME))
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, column: warmth})
+    told = {'least': f'{least:.3g}', 'most': f'{least + 30.0:.3g}'}
+    if unit is None:
+        assert made.unstated == (says('temperature_of_no_unit', **told),)
+    else:
+        assert says('temperature_taken', unit=unit, **told) in made.notes
+        assert made.content['assumed']['x.temperature.unit']['value'] == unit
