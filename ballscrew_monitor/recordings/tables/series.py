@@ -22,6 +22,7 @@ from ballscrew_monitor.recordings.tables.doubts import (
     doubts_of_columns,
     doubts_of_motion,
     motion_of,
+    of_other_axes,
     of_slope,
     with_sign,
 )
@@ -214,6 +215,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         run_borders=tuple(run_borders),
         notes=(
             *_unread(path, unread),
+            *of_other_axes(mapping),
             *_losses(mapping, table.left_out),
             *filter(None, (note for _, note in [*moving, *signed])),
             *table.notes,

@@ -244,9 +244,9 @@ class Times:
         self.group, self._table, self._mapping = group, table, mapping
         time = table.readings[group.time_columns[0]] if mapping.time else None
         # A clock on the wall may be set back.
-        is_clock = time is not None and time.is_time
-        wall = is_clock and not time.is_zoned
-        self.gate, self._course = TimeGate(wall=wall, wraps=self._wraps(is_clock)), Course()
+        wall = time is not None and time.is_time and not time.is_zoned
+        wraps = _wraps(mapping.time) if mapping.time and not (time and time.is_time) else []
+        self.gate, self._course = TimeGate(wall=wall, wraps=wraps), Course()
         silence = Silence()
         self._spread: Spread | None = None
         self._even: EvenRows | None = None
@@ -476,14 +476,6 @@ class Times:
         reading = self._table.readings[self.group.time_columns[0]]
         return reading.is_time and is_of_a_day(reading.extremes)
 
-    def _wraps(self, is_clock: bool) -> list[float]:
-        """Return after which times [s] the numbers of a time may begin again and go on."""
-        time = self._mapping.time
-        if time is None or is_clock:
-            return []
-        unit = abs(time.scale) * SCALES[time.unit][0]
-        return [DAY, *(unit * count for count in COUNTERS)]
-
     def _told(self, names: Collection[str]) -> Iterator[Block]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
         row, midnights = 0, Midnights() if self._is_of_a_day else None
@@ -595,6 +587,12 @@ class Course:
             self.end = float(latest[-1])
             stamps = np.clip((times - self.begin) * SECOND, -LARGEST, LARGEST)
             self.steps.add(stamps, np.searchsorted(self._run_begins, times, 'right'))
+
+
+def _wraps(time: Column) -> list[float]:
+    """Return after which times [s] the numbers of a time may begin again and go on."""
+    unit = abs(time.scale) * SCALES[time.unit][0]
+    return [DAY, *(unit * count for count in COUNTERS)]
 
 
 def line(values: Array, column: Column, factor: float) -> Array:

@@ -230,7 +230,8 @@ def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_s
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-    made = guessed({'Zeit_ms': -TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
+    jagged = np.random.default_rng(5).permutation(TIME)
+    made = guessed({'Zeit_ms': jagged, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('still_time'),)
 
@@ -331,7 +332,7 @@ def test_a_time_with_decimals_is_of_no_unit_until_one_is_stated(scale, guessed, 
 )
 def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
     made = guessed({name: TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
-    assert made.content['time'] == {'column': name}
+    assert made.content['time'] == {'column': name, 'unit': unit}
 
 
 @pytest.mark.parametrize(
@@ -390,7 +391,7 @@ def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
 )
 def test_days_are_those_of_their_epoch(name, zero, unit, guessed):
     made = guessed({name: zero + TIME / 86400.0, 'v_x [mm/s]': SPEED}, form='{:.12g}')
-    assert made.content['time'] == {'column': name}
+    assert made.content['time'] == {'column': name, 'unit': unit}
 
 
 def test_seconds_of_a_day_are_no_days(guessed):
@@ -642,7 +643,7 @@ def test_a_unit_that_is_so_many_of_another_is_read(name, unit, scale, read, tmp_
     columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: force}
     path = write_csv(tmp_path / 'log.csv', columns)
     made = guess(path)
-    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale}
+    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale, 'unit': unit}
     assert not made.unstated
     (rows,) = [rows for (rows,) in read_series(path, make_map(made.content)).blocks()]
     assert rows.columns[f'x.{read}'] == pytest.approx(force * scale, abs=1e-2)
@@ -684,7 +685,7 @@ def test_a_part_of_a_rated_torque_is_offered_as_one_of_its_per_cent(unit, guesse
 )
 def test_the_unit_tells_what_a_torque_or_an_effort_is(name, kind, unit, guessed):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: 9.0 * SPEED})
-    assert made.content['axes']['x'][kind] == {'column': name}
+    assert made.content['axes']['x'][kind] == {'column': name, 'unit': unit}
 
 
 def test_an_axis_in_brackets_is_no_unit(guessed):
