@@ -552,8 +552,8 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 yield cells.rename(called).select(names)
 
     rows = text.lines_about
-    notes = (f'log {path}: its letters are not of UTF-8, they are read by {coding}',)
-    notes = notes if coding else ()
+    note = f'log {path}: its letters are not of UTF-8, they are read by {coding}'
+    notes = (note,) if coding else ()
     source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=notes)
     return source.plain(heads.cells_of(lines, head))
 
