@@ -72,14 +72,19 @@ MILLISECONDS = (
     (r'(\d:\d\d:\d\d\.)0(\d{3})(\D|$)', '$1$2$3'),
     (r'(\d:\d\d:\d\d\.)00(\d{3,})', '$1$2'),
 )
-"""What follows a colon behind the seconds is a whole number of them, be it of fewer digits."""
+"""
+What follows a colon behind the seconds is a whole number of them, be it of fewer digits.
+
+Trends of Rockwell write a semicolon there.
+
+"""
 STEPS = (
     (r'^\s+|\s+$', ''),
     (r'(?i)^(?:mon|tue|wed|thu|fri|sat|sun|mo|di|mi|do|fr|sa|so)[a-z]*\.?,? +', ''),
     (r'(\d)T(\d)', '$1 $2'),
     (r'(?i)\s*(?:Z|UTC|GMT)$', ''),
     (r'(\d:\d\d),(\d)', '$1.$2'),
-    (r'(\d:\d\d:\d\d):(\d)', '$1.00$2'),
+    (r'(\d:\d\d:\d\d)[:;](\d)', '$1.00$2'),
     *MILLISECONDS,
     (r'(?i)\s*\b?([ap])\.? ?m\.?$', ' ${1}m'),
     (r'(\d\.)([\p{L}\p{M}]{3})', '$1 $2'),
@@ -145,7 +150,7 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     if not len(sample) or not sample.str.contains(r'\d').any():
         return
     steps = []
-    counted = sample.str.contains(r'\d:\d\d:\d\d:\d').any()
+    counted = sample.str.contains(r'\d:\d\d:\d\d[:;]\d').any()
     for step in STEPS:
         replaced = _replaced(sample, [step])
         if counted if step in MILLISECONDS else not replaced.equals(sample):

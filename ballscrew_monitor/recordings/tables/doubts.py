@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import Turns
 from ballscrew_monitor.recordings.tables.interleaved import cells_of_sources, of_several
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
-from ballscrew_monitor.recordings.tables.names import axis_of_all
+from ballscrew_monitor.recordings.tables.names import axis_of_all, LINEAR, read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.times import line, SHOWING, Times
@@ -195,6 +195,20 @@ def _of_another_axis(mapping: TableMap, what: str, text: str) -> Iterator[str]:
     told, stated = axis_of_all(text), axis_of_all(mapping.axes[0].name)
     if len(mapping.axes) == 1 and told and stated not in ('', told):
         yield f'{what} of axis {told}, the map states axis {stated}: name axis {told} in the map'
+
+
+def of_other_axes(mapping: TableMap) -> Iterator[str]:
+    """Yield a sentence about each column whose name says another axis than the map does."""
+    for axis in mapping.axes:
+        stated = axis_of_all(axis.name)
+        for kind, column in axis.columns.items():
+            named = read_name(column.name)
+            told = named.axis[:1] if named.place == 'axis' else ''
+            if stated and told in LINEAR - {stated}:
+                yield (
+                    f'axis {axis.name}: its {kind} is {short(column.name)} by the map, which the '
+                    f'name says to be of axis {told}'
+                )
 
 
 def doubts_of_motion(

@@ -53,7 +53,7 @@ NUMBER = re.compile(
 )
 TIME = re.compile(
     r'(?:\w{2,9}\.?,? )?(?=.*\d)(?:\d{1,4}[-./ ](?:\d{1,2}|\w{3,9}\.?)[-./ ]\d{1,4}|\w{3,9}\.? '
-    r'\d{1,2},? \d{4}|\d{8}(?=T))?,?[ T_-]?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?|\.\d+)?)?'
+    r'\d{1,2},? \d{4}|\d{8}(?=T))?,?[ T_-]?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,:;]\d+)?|\.\d+)?)?'
     r'(?: ?[AaPp]\.?[Mm]\.?)?(?: ?(?:Z|UTC|GMT|[-+]\d{2}:?\d{2}))?'
 )
 """A date, a time of day or both."""
@@ -409,7 +409,7 @@ def _lacks_unit(name: str, unit: str) -> bool:
         is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
         for text in BRACKETS.findall(name)
     )
-    unknown = kind not in ('', 'time') and any(map(str.isalpha, unit))
+    unknown = (kind not in ('', 'time') or unit[:1].isdigit()) and any(map(str.isalpha, unit))
     return not held and (is_unit(unit) or unknown)
 
 
@@ -514,8 +514,7 @@ class _Above:
 
     def _rows_of_factors(self) -> Iterator[list[str]]:
         """Yield rows of numbers below the names that are neither 1, 0, nor those of columns."""
-        below = itertools.dropwhile(lambda one: not _known(one[1]), self.wide)
-        for _, row in below:
+        for row in self._below_names():
             if len(row) == self.width and all(_kind(cell) == 'n' for cell in row):
                 numbers = {*map(_number, row)}
                 first = int(row[0]) if row[0] in ('0', '1') else math.nan
@@ -523,12 +522,17 @@ class _Above:
                 if numbers - {1.0} and numbers - {0.0} and [*map(_number, row)] != numbered:
                     yield row
 
+    def _below_names(self) -> list[list[str]]:
+        """Return the rows from the first with a known name on, or else with names of any kind."""
+        rows = [row for _, row in self.wide]
+        is_begin = _known if any(map(_known, rows)) else lambda row: not _is_of_numbers(row)
+        return [*itertools.dropwhile(lambda row: not is_begin(row), rows)]
+
     def _labelled_rows(self, first: Sequence[list[str]]) -> Iterator[list[str]]:
         """Yield rows of numbers behind a label that stand between the names and the rows."""
         if [_kind(row[0]) for row in first if row].count('x') > 2:
             return  # a column of texts
-        below = itertools.dropwhile(lambda one: not _known(one[1]), self.wide)
-        for row in [*(row for _, row in below), *first[:2]]:
+        for row in [*self._below_names(), *first[:2]]:
             label, *cells = row or ['']
             numbers = {*map(_number, cells)}
             of_time = unit_of(f'[{label}]', 'time')

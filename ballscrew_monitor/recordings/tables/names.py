@@ -32,21 +32,23 @@ KINDS = {
     'speed': frozenset(
         'velocity velo vel speed rpm omega feed frt '
         'geschwindigkeit geschw vorschub drehzahl '
-        'vitesse velocità velocidad prędkość posuw'.split()
+        'vitesse velocità velocidad prędkość posuw rychlost posuv'.split()
     ),
     'position': frozenset(
-        'position pos posf lage weg stellung posizione posición pozycja położenie'.split()
+        'position pos posf lage weg stellung posizione posición pozycja położenie poloha'.split()
     ),
-    'load': frozenset('force frc load thrust kraft forza fuerza siła'.split()),
+    'load': frozenset('force frc load thrust kraft forza fuerza siła síla'.split()),
     'torque': frozenset('torque trq tcmd effort moment drehmoment couple coppia'.split()),
     'current': frozenset(
-        'current curr cur amps amp iq strom courant corrente corriente prąd'.split()
+        'current curr cur amps amp iq strom courant corrente corriente prąd proud'.split()
     ),
-    'temperature': frozenset('temperature temp temperatur température temperatura'.split()),
+    'temperature': frozenset(
+        'temperature temp temperatur température temperatura teplota'.split()
+    ),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
         'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd '
-        'temps horodatage tempo tiempo czas'.split()
+        'temps horodatage tempo tiempo czas čas'.split()
     ),
 }
 # Words that make a column something else, whatever else its name says.
@@ -104,10 +106,15 @@ SHORT = {
 }  # fmt: skip
 """Letters of quantities that stand alone beside the letter of an axis."""
 JOINED = re.compile(
-    r'^(?:(?P<axis>[xyzXYZ]\d?)(?P<word>act[mw]?|com|abs|load|frt|[vfips])|'
+    r'^(?:(?P<axis>[xyzXYZ](?:I(?=\d))?\d?)(?P<word>act[mw]?|com|abs|load|frt|[vfips])|'
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
-"""Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
+"""
+Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz.
+
+The inclined axis Y of a lathe is YI1 to controls of Okuma.
+
+"""
 OF_CONTROL = re.compile(
     r'(?:^|(?<=[\s.]))(?:[SP]-\d-\d{4}(?:\.\d+)*|[rp]\d{2,5}(?:\[\d+\])?|0x[\da-fA-F]{4}(?::\d+)?)'
     r'(?:[\s,:]+|$)|\s*\(0x[\da-fA-F]{4}(?::\d+)?\)|\bStatus\w*\.(?=\w)|'
@@ -241,7 +248,10 @@ def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
 
 def _parted(match: re.Match[str]) -> str:
     """Return axis and quantity of a word that joins them, apart."""
-    axis, word = match['axis'] or match['of'], match['word'] or match['letter'].lower()
+    axis, word = (
+        (match['axis'] or match['of']).replace('I', ''),
+        match['word'] or match['letter'].lower(),
+    )
     return f'{axis} {JOINED_WORDS.get(word, word)} '
 
 

@@ -25,6 +25,7 @@ They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, days o
 Julian days, ticks of 100 ns since the year 1, and millionths of days since 1900, as of WinCC.
 
 """
+SINCE_1904 = 1462  # days of a spreadsheet whose days count from 1904
 SCALES = {
     unit: (factor, 0.0) for unit, factor in (conversions.TIME_UNITS | {'d': DAY}).items()
 } | EPOCHS

@@ -22,6 +22,7 @@ from ballscrew_monitor.recordings.tables.doubts import (
     doubts_of_columns,
     doubts_of_motion,
     motion_of,
+    of_other_axes,
     of_slope,
     with_sign,
 )
@@ -214,6 +215,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         run_borders=tuple(run_borders),
         notes=(
             *_unread(path, unread),
+            *of_other_axes(mapping),
             *_losses(mapping, table.left_out),
             *filter(None, (note for _, note in [*moving, *signed])),
             *table.notes,
@@ -287,7 +289,7 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     alike = [one.gate for one in times if len(one.gate.runs) == runs]
     offsets, begins = run_offsets(alike, gap)
     for one in times:
-        one.place(offsets, [run.row for run in motion[0].gate.runs], begins)
+        one.place(offsets, motion[0], begins)
     begin = min(one.first for one in times)
     for one in times:
         one.since(begin)

@@ -27,7 +27,9 @@ from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_sep
 from ballscrew_monitor.recordings.tables.long_form import decoded
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
+from ballscrew_monitor.recordings.tables.names import KINDS
 from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
 from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
@@ -54,8 +56,10 @@ COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks'
 """Names of a last column whose cells a row need not have."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
-CODINGS = ('utf-8', 'cp1252', 'latin-1')
-"""Codings of a line, the first that fits; the last fits always."""
+CODINGS = ('utf-8', 'cp1252', 'cp1250', 'latin-1')
+"""Codings of a text: the first is tried in each line, one of the next for all others, the last."""
+WORDS = frozenset[str]().union(*KINDS.values())
+"""Words of quantities."""
 AFTER_EMPTY = '"'
 """The last of the letters that may follow a sign before an empty cell: ends of lines, blanks."""
 TRIES = (
@@ -109,11 +113,11 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`. `left_out` says why other sheets or arrays are not read, `more_rows` of which
-    are of the same columns, `lengths` how many cells columns of groups hold, `arrays` how many
-    those whose rows nothing but a time ties to others; `notes` say what is odd about it. Names of
-    a source that `is_grouped` begin with that of a group. `short` are the rows of too few cells
-    since it began.
+    is one `sheet`, whose days may count `from_1904`. `left_out` says why other sheets or arrays
+    are not read, `more_rows` of which are of the same columns, `lengths` how many cells columns of
+    groups hold, `arrays` how many those whose rows nothing but a time ties to others; `notes` say
+    what is odd about it. Names of a source that `is_grouped` begin with that of a group. `short`
+    are the rows of too few cells since it began.
 
     """
 
@@ -123,6 +127,7 @@ class Source:
     read: Read
     most: float = math.inf
     sheet: str = ''
+    from_1904: bool = False
     left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
     more_rows: int = 0
     lengths: Mapping[str, int] = dataclasses.field(default_factory=dict)
@@ -145,8 +150,11 @@ class Source:
             columns = plain_columns(cells)
         if not columns:
             return self
-        head = self.head.renamed({name: new for name, (new, _) in columns.items()})
-        return dataclasses.replace(self, head=head, read=plainly(self.read, columns))
+        renamed = {name: new for name, (new, _) in columns.items()}
+        arrays = {renamed.get(name, name): count for name, count in self.arrays.items()}
+        head, read = self.head.renamed(renamed), plainly(self.read, columns)
+        lengths = {renamed.get(name, name): count for name, count in self.lengths.items()}
+        return dataclasses.replace(self, head=head, read=read, arrays=arrays, lengths=lengths)
 
     def joined(self) -> 'Source':
         """Return it with one column of times in the place of several with their parts."""
@@ -421,6 +429,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     source = dataclasses.replace(
         source,
         sheet=sheet.name,
+        from_1904=sheet.from_1904,
         left_out=sheet.others,
         more_rows=sheet.more_rows,
         notes=tuple(notes[: sheet.hidden]),
@@ -484,7 +493,7 @@ def _too_long(path: Path) -> InputError:
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
-    lines, begins = _first_lines(text)
+    lines, begins, coding = _first_lines(text)
     widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
     with _findable(path):
@@ -542,7 +551,10 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 row += cells.height
                 yield cells.rename(called).select(names)
 
-    source = Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+    rows = text.lines_about
+    note = f'log {path}: its letters are not of UTF-8, they are read by {coding}'
+    notes = (note,) if coding else ()
+    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=notes)
     return source.plain(heads.cells_of(lines, head))
 
 
@@ -603,20 +615,23 @@ def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataF
     return None
 
 
-def _first_lines(text: _Text) -> tuple[list[Line], list[int]]:
-    """Return the first lines of a text, those within quotes as one, and where each begins."""
-    lines, begins, at, number = [], [], text.begin(), 0
+def _first_lines(text: _Text) -> tuple[list[Line], list[int], str]:
+    """Return the first lines of a text, quoted ones as one, where each begins, their coding."""
+    lines, rows, begins, at, number = list[str](), list[int](), [], text.begin(), 0
     with text.lines() as stream:
         for line in stream:
             begin, row, at = at, number + 1, at + len(line)
             number += 1
             while line.count('"') % 2 and at <= limits.MEGA and (more := next(stream, '')):
                 line, at, number = line + more, at + len(more), number + 1
-            lines.append(Line(raw=_decoded(line), row=row))
+            lines.append(line)
+            rows.append(row)
             begins.append(begin)
             if len(lines) >= LINES or at > limits.MEGA:
                 break
-    return lines, [*begins, at]
+    coding = _coding(lines)
+    read = (_decoded(line, coding or CODINGS[0]) for line in lines)
+    return [Line(raw=raw, row=row) for raw, row in zip(read, rows)], [*begins, at], coding
 
 
 @contextlib.contextmanager
@@ -647,12 +662,33 @@ def _is_odd(block: bytes) -> bool:
     return b'"' in block and block.count(b'"') % 2 == 1
 
 
-def _decoded(line: str) -> str:
-    """Return a line of which each letter is a byte in the first coding that fits."""
-    for coding in CODINGS[:-1]:
+def _decoded(line: str, coding: str) -> str:
+    """Return a line of which each letter is a byte, in UTF-8 or else a coding if it fits."""
+    for each in (CODINGS[0], coding):
         with contextlib.suppress(UnicodeError):
-            return line.encode(CODINGS[-1]).decode(coding)
+            return line.encode(CODINGS[-1]).decode(each)
     return line
+
+
+def _coding(lines: Sequence[str]) -> str:
+    """
+    Return the coding of the lines that are not of UTF-8, empty if there are none.
+
+    Of those for the west and the middle of Europe it is that with more words of quantities.
+
+    """
+    others = ''
+    for line in lines:
+        try:
+            line.encode(CODINGS[-1]).decode()
+        except UnicodeError:
+            others += line
+    content = others.encode(CODINGS[-1])
+
+    def known(coding: str) -> int:
+        return len({*words_of(content.decode(coding, 'replace'))} & WORDS)
+
+    return max(CODINGS[1:-1], key=known) if others else ''
 
 
 def _check_columns(path: Path, count: int) -> None:

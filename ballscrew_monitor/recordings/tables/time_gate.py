@@ -35,6 +35,7 @@ SUMMER = (3, 9, 10)  # months in which clocks are set on, in the north and in th
 SUNDAY = 6
 NIGHT = 4  # o'clock, before which that is
 FEWEST = 20  # rows of a run, on average, of more than a few
+FEW_RISES = 0.01  # of the falls of a table with the newest row first, as at midnights
 RUNS = 1000  # more runs than any logger appends
 INSTEAD = 'state time.rate_Hz instead of time.column in the map'
 
@@ -54,9 +55,14 @@ class Run:
 class TimeGate:
     """Times of the rows of a table, looked through in the order of the file."""
 
-    def __init__(self, *, wall: bool = False) -> None:
-        """Begin with no row; a clock on the `wall` may be set back or on by an hour."""
-        self._wall = wall
+    def __init__(self, *, wall: bool = False, wraps: Sequence[float] = ()) -> None:
+        """
+        Begin with no row; a clock on the `wall` may be set back or on by an hour.
+
+        Any other may begin again after one of `wraps` [s], if a regular step goes on there.
+
+        """
+        self._wall, self._wraps = wall, wraps
         self.runs: list[Run] = []
         self.clocks: list[tuple[int, float]] = []  # row from which a clock was set, by minus [s]
         self.count = self.late = 0
@@ -189,12 +195,14 @@ class TimeGate:
         run, (first, row) = self.runs[-1], self._pending[0]
         steps = np.diff([time for time, _ in self._pending])
         self._unordered |= 2 * int((steps < 0.0).sum()) > len(steps)
-        fall = self._before - first
-        if self._wall and HOUR - CLOSE <= fall <= HOUR and abs(first - run.begin) > CLOSE:
-            run.shift += HOUR
-            self.clocks.append((row, HOUR))
+        fall, step = self._before - first, self.step
+        is_hour = self._wall and HOUR - CLOSE <= fall <= HOUR and abs(first - run.begin) > CLOSE
+        missed = (wrap for wrap in self._wraps if abs(wrap - fall - step) < step / 2)
+        if back := HOUR if is_hour else next(missed, 0.0):
+            run.shift += back
+            self.clocks.append((row, back))
             run.rows += len(self._pending)
-            run.end = max(run.end, max(time for time, _ in self._pending) + HOUR)
+            run.end = max(run.end, max(time for time, _ in self._pending) + back)
         else:
             self._within += self._wall and math.floor(first) == math.floor(self._before)
             self.runs.append(_run(first - run.shift, row))
@@ -215,6 +223,12 @@ class TimeGate:
                 self._settle()
 
     @property
+    def falls(self) -> bool:
+        """Return True if the newest row stands first: times fall, and next to none rises."""
+        rising = self.count - 1 - self._equal - self._fallen
+        return self._unordered and rising <= FEW_RISES * self._fallen
+
+    @property
     def limits(self) -> tuple[float, float]:
         """Return the least and the most time [s]."""
         return self._least[0], self._most[0]
@@ -233,9 +247,11 @@ class TimeGate:
     def words(self) -> list[str]:
         """Return in a sentence each the runs, and where a clock was set back or on."""
         found = [
-            f'the clock is set back by an hour in row {row}: times go on there'
-            if back > 0.0
-            else f'the clock is set on by an hour in row {row}: times go on there without it'
+            f'the clock is set on by an hour in row {row}: times go on there without it'
+            if back < 0.0
+            else f'the clock is set back by an hour in row {row}: times go on there'
+            if back == HOUR
+            else f'the clock begins again after {back:.10g} s in row {row}: times go on there'
             for row, back in self.clocks
         ]
         if len(self.runs) > 1:
@@ -287,6 +303,13 @@ class TimeGate:
 
     def fault_of_order(self) -> tuple[str, str]:
         """Return the fault of times that do not rise, or begin again all the time."""
+        if self.falls:
+            before, time, row = self._first_fall
+            return (
+                f'it falls from row to row, the newest row stands first: row {row} has '
+                f'{time:.12g} s after {before:.12g} s',
+                'turn the order of the rows round',
+            )
         if self._unordered or len(self.runs) > RUNS:
             before, time, row = self._first_fall
             return (

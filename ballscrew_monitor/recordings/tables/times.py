@@ -20,11 +20,11 @@ from ballscrew_monitor.recordings.tables.other_tables import (
     TAIL,
     TAKE_OUT,
 )
-from ballscrew_monitor.recordings.tables.quantities import SCALES
+from ballscrew_monitor.recordings.tables.quantities import DAY, SCALES, SINCE_1904
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, REGULAR, SHARED, TimeGate
-from ballscrew_monitor.recordings.words import short, Shown
+from ballscrew_monitor.recordings.words import counted, short, Shown
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -37,6 +37,7 @@ LARGEST = 1e19  # [ns] more than any stamp
 HELD = 1.5  # times the usual time between rows, after which a value that holds is repeated
 MOST_HELD = 1_000_000  # repeated rows in a gap: in a longer one nothing is known
 SHOWING = 100_000  # of the first rows, which show whether a position has a slope
+COUNTERS = (2**32, 2**31)  # units of time after which a whole number of 32 bits begins again
 HUGE_GAP = 100  # times the usual time between rows
 _BINS = 2 + math.ceil(math.log(LARGEST) / math.log1p(WIDTH))
 
@@ -244,7 +245,8 @@ class Times:
         time = table.readings[group.time_columns[0]] if mapping.time else None
         # A clock on the wall may be set back.
         wall = time is not None and time.is_time and not time.is_zoned
-        self.gate, self._course = TimeGate(wall=wall), Course()
+        wraps = _wraps(mapping.time) if mapping.time and not (time and time.is_time) else []
+        self.gate, self._course = TimeGate(wall=wall, wraps=wraps), Course()
         silence = Silence()
         self._spread: Spread | None = None
         self._even: EvenRows | None = None
@@ -312,10 +314,10 @@ class Times:
                 break
 
     def place(
-        self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]
+        self, offsets: Sequence[float], motion: 'Times', run_begins: Sequence[float]
     ) -> None:
         """
-        Place the runs by their offsets [s]; those of the motion begin in some rows of the file.
+        Place the runs by their offsets [s], which are those of the runs of a `motion`.
 
         All but the first then begin at times [s], before which there is a pause.
 
@@ -325,10 +327,13 @@ class Times:
         Then the steps between rows are known, and how late the latest row comes.
 
         """
-        if len(offsets) == len(self.gate.runs):
+        runs, clocks = len(self.gate.runs), len(motion.gate.clocks)
+        is_told = len(self.gate.clocks) == clocks or not self._has_time_of(motion)
+        if len(offsets) == runs and is_told:
             self._shifts = self.gate.shifts(offsets)
-        elif len(self.gate.runs) < len(offsets):
-            self._shifts, self.gate.late = dict(zip(rows[1:], offsets[1:], strict=True)), 0
+        elif len(offsets) > runs or not is_told:
+            self._shifts, self.gate.late = motion.gate.shifts(offsets), 0
+            self.gate.runs, self.gate.clocks = self.gate.runs[:1], []
         else:
             self.gate.runs = self.gate.runs[:1]
         self._run_begins = np.array(run_begins)
@@ -341,6 +346,9 @@ class Times:
         self._late, self._steps = self._course.late, self._course.steps
         self._begin = self.first = self._course.begin
         self.last = self._course.end
+
+    def _has_time_of(self, motion: 'Times') -> bool:
+        return self.group.time_columns == motion.group.time_columns
 
     def since(self, begin: float) -> None:
         """Let stamps count from the first time of the log [s]; raises InputError for others."""
@@ -375,6 +383,8 @@ class Times:
     def notes(self) -> list[str]:
         """Return what is odd about the times, a sentence each."""
         found, log = [], f'log {self._table.path}:'
+        if self._is_from_1904:
+            found.append(f'{log} its workbook counts days from 1904, by which they are read')
         if left_out := self._table.rows - self.gate.count - self.group.holes:
             found.append(f'{log} {left_out} rows without a time are left out')
         if self.gate.late:
@@ -384,6 +394,9 @@ class Times:
         found += [f'{log} {self._spread.words}'] if self._spread else []
         found += [f'{log} {self._even.words}'] if self._even else []
         found += [f'{log} {one}' for one in self.gate.words()]
+        if self._is_of_a_day and (days := int(self.gate.limits[1] // DAY)):
+            midnights = counted(days, 'midnight')
+            found.append(f'{log} its times of day have no date and go on through {midnights}')
         if self.count < 2:
             return found
         if gaps := self._steps.gaps():
@@ -455,20 +468,29 @@ class Times:
             if len(times):
                 yield row, times, columns
 
+    @property
+    def _is_of_a_day(self) -> bool:
+        """Return True if times are of a day that no date tells apart, so that they go on."""
+        if self._mapping.time is None or self._mapping.date:
+            return False
+        reading = self._table.readings[self.group.time_columns[0]]
+        return reading.is_time and is_of_a_day(reading.extremes)
+
     def _told(self, names: Collection[str]) -> Iterator[Block]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
-        row, midnights = 0, None
-        if self._mapping.time is not None and not self._mapping.date:
-            reading = self._table.readings[self.group.time_columns[0]]
-            # Times of a day go on, if no date tells them apart.
-            if reading.is_time and is_of_a_day(reading.extremes):
-                midnights = Midnights()
+        row, midnights = 0, Midnights() if self._is_of_a_day else None
         for block, holes in self._table.blocks_with_holes(names, self.group.hollow):
             times = self._times(block, row, midnights)
             if holes is not None:
                 times = np.where(holes, math.nan, times)
             yield row + self._table.first_row, times, block
             row += len(times)
+
+    @property
+    def _is_from_1904(self) -> bool:
+        time = self._mapping.time
+        is_day = time is not None and time.unit == 'spreadsheet_days'
+        return is_day and self._table.source.from_1904
 
     def _check_gate(self) -> None:
         """Raise InputError if times are such as no recording has; a slow signal refuses none."""
@@ -494,6 +516,7 @@ class Times:
         days = columns[self._mapping.date] if self._mapping.date else 0.0
         cells = columns[self.group.time_columns[0]]
         factor, shift = SCALES[time.unit]
+        shift += DAY * SINCE_1904 if self._is_from_1904 else 0.0
         told = cells if midnights is None else midnights.passed(cells)
         return days + line(told, time, factor) + shift
 
@@ -564,6 +587,12 @@ class Course:
             self.end = float(latest[-1])
             stamps = np.clip((times - self.begin) * SECOND, -LARGEST, LARGEST)
             self.steps.add(stamps, np.searchsorted(self._run_begins, times, 'right'))
+
+
+def _wraps(time: Column) -> list[float]:
+    """Return after which times [s] the numbers of a time may begin again and go on."""
+    unit = abs(time.scale) * SCALES[time.unit][0]
+    return [DAY, *(unit * count for count in COUNTERS)]
 
 
 def line(values: Array, column: Column, factor: float) -> Array:

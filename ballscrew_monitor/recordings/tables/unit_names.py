@@ -7,7 +7,8 @@ import re
 
 from ballscrew_monitor.recordings.tables.quantities import NAMED_BY_MAPS, UNITS
 
-_CAPITAL, _SMALL = 'A-ZÄÖÜÉÓĄĆĘŁŃŚŹŻ', 'a-zäöüßàéèóíąćęłńśźżµμ°'
+_CAPITAL = 'A-ZÄÖÜÉÓĄĆĘŁŃŚŹŻČŘŠŽÁÍÚŮÝĚ'
+_SMALL = 'a-zäöüßàéèóíąćęłńśźżčřšžáúůýěµμ°'
 WORD = re.compile(rf'[{_CAPITAL}]+(?![{_SMALL}])|[{_CAPITAL}]?[{_SMALL}]+|\d+')
 """A word of a name: of one case, or of small letters after a capital; or a number."""
 COMPOUND = re.compile(

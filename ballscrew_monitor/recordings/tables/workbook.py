@@ -37,8 +37,9 @@ LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table
 FEWEST = (20, 3)  # rows of numbers of a table, if not those of any sheet
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
 ANOTHER = 'a sheet before it has rows of numbers'
-NO_DAY = '1899-12-31 '
+NO_DAY = r'^(?:1899-12-31|1904-01-01) '
 """Day that a sheet adds to a time of day."""
+FROM_1904 = re.compile(rb'<(?:\w+:)?workbookPr\b[^>]*\bdate1904\s*=\s*["\'](?:1|true)')
 SHEET = b'sheetData'  # the element that holds the cells
 CELL = re.compile(rb'[<:]c[\s/>]')
 BARE_FORMULA = re.compile(rb'</f>\s*(?:<v>\s*</v>|<v\s*/>)?\s*</c>')
@@ -56,7 +57,7 @@ class Sheet:
     A sheet: its name, its cells, and why each other sheet of its workbook is not read.
 
     `more_rows` are those of the others that have its names, `hidden` those of all that nobody
-    sees.
+    sees. Days of its workbook count from 1904 if it is `from_1904`, else from 1900.
 
     """
 
@@ -65,6 +66,7 @@ class Sheet:
     others: Mapping[str, str]
     more_rows: int = 0
     hidden: int = 0
+    from_1904: bool = False
 
 
 def read_sheet(path: Path, name: str = '') -> Sheet:
@@ -72,7 +74,7 @@ def read_sheet(path: Path, name: str = '') -> Sheet:
     importlib.import_module('fastexcel')  # it is optional
     hidden = _check_size(path)
     cells, told = frame_apart(path, f'{__name__}:write_cells', sheet=name)
-    return Sheet(cells=cells, hidden=hidden, **told)
+    return Sheet(cells=cells, hidden=hidden, from_1904=_counts_from_1904(path), **told)
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
@@ -133,7 +135,7 @@ def _texts(path: str, name: str) -> pl.DataFrame:
             drop_empty_rows=False,
             drop_empty_cols=False,
         )
-        return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+        return cells.select(pl.all().cast(pl.String).str.replace(NO_DAY, ''))
 
 
 def _check_size(path: Path) -> int:
@@ -163,6 +165,13 @@ def holds_formulas_alone(path: Path) -> bool:
                 if any(map(BARE_FORMULA.search, _whole_tags(stream))):
                     return True
     return False
+
+
+def _counts_from_1904(path: Path) -> bool:
+    """Return True if days of a workbook, which was read before, count from 1904."""
+    with zipfile.ZipFile(path) as archive:
+        parts = [part for part in archive.namelist() if part.lower() == 'xl/workbook.xml']
+        return any(FROM_1904.search(archive.open(part).read(limits.MEGA)) for part in parts)
 
 
 def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, int]]:

@@ -62,7 +62,7 @@ class TimeColumn:
         self._draft, self._log = draft, draft.log
         self.column: Named | None = None
         self.times: Array | None = None
-        self.unit, self.step = math.nan, math.nan
+        self.unit, self.step, self._falling = math.nan, math.nan, ''
         self.stated = self._found()
 
     def _found(self) -> dict[str, Any]:
@@ -119,6 +119,10 @@ class TimeColumn:
             if other := rows_above(gate.runs, gate.step):
                 column = short(repr(one.column))
                 raise InputError(f'log {log.path}: column {column}: {other}: {TAKE_OUT}')
+            if gate.falls:
+                self._falling = (
+                    f'column {short(repr(one.column))}: {": ".join(gate.fault_of_order())}'
+                )
             faults.append((gate.fault() if unit else gate.fault_of_order())[0])
         return next(filter(None, faults), '')
 
@@ -243,8 +247,15 @@ class TimeColumn:
         draft.assume('time.epoch', text.replace('+00:00', 'Z'), f'{where}, taken as UTC')
 
     def without_column(self) -> dict[str, Any]:
-        """Return what the map says of the time of a log whose time is not read."""
+        """
+        Return what the map says of the time of a log whose time is not read.
+
+        Raises InputError for one whose rows stand in the order of time, but the newest first.
+
+        """
         draft, log = self._draft, self._log
+        if self._falling:  # at a rate alone, all would move the other way
+            raise InputError(f'log {log.path}: {self._falling}')
         if math.isfinite(log.head.period) and not log.not_times:
             self.step = log.head.period
             self._set_epoch('the log has no time that is read')

@@ -9,10 +9,11 @@ from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.first_map.draft import Draft
-from ballscrew_monitor.recordings.tables.first_map.machine import LEADS, TEMPERATURE
-from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.first_map.machine import LEADS
+from ballscrew_monitor.recordings.tables.mapping import MOTOR, NUMBERS
 from ballscrew_monitor.recordings.tables.quantities import MOTION, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import words_of
+from ballscrew_monitor.recordings.words import short
 import numpy as np
 from surrogate.units import MILLI, TURN
 
@@ -81,10 +82,23 @@ def _unit(draft: Draft, name: str, kind: str) -> tuple[str, str]:
     if kind == 'temperature' and words_of(column)[-1:] == ['f']:
         return '', f'{column} may be in degF: unit degC, {OF_DEGF}'
     if kind == 'temperature':
-        least = np.nanmin(draft.log.extremes[column])
-        if least > TEMPERATURE * 5:
-            return 'K', f'its least is {least:.3g}'
+        return _of_temperature(draft, name, column)
     return next(iter(UNITS[kind])), 'the usual one'
+
+
+def _of_temperature(draft: Draft, name: str, column: str) -> tuple[str, str]:
+    """Return the unit of a temperature and why, which is said; or why the map must state it."""
+    least, most = draft.log.extremes[column]
+    coldest, hottest = NUMBERS['temperature_degC']
+    told = f'its values are {least:.3g} to {most:.3g}'
+    unit = 'degC' if coldest <= least and most <= hottest else 'K' if least > hottest else ''
+    if not unit:
+        return '', f'{column} states none that is known, and {told}'
+    draft.notes.append(
+        f'axis {name}: {short(column)} states no unit of a temperature: it is read in {unit}, '
+        f'{told}'
+    )
+    return unit, told
 
 
 def _of_joint(draft: Draft, name: str, kind: str) -> str:

@@ -809,3 +809,16 @@ def test_signals_of_one_group_of_mdf_are_columns_side_by_side(tmp_path, monkeypa
     monkeypatch.setattr(file, 'iter_channels', None)
     file.groups[1].channel_group.cycles_nr = FAR
     refused('cycles', foreign.read_signals, path, 'mdf')
+
+
+def test_arrays_of_texts_with_units_have_lengths_as_well(tmp_path, says):
+    path = tmp_path / 'log.json'
+    speeds = [f'{at % 7} mm/s' for at in range(80)]
+    path.write_text(json.dumps({'t [s]': [at / 10 for at in range(100)], 'x speed': speeds}))
+    made = guess(path)
+    assert made.content['axes']['x']['speed'] == {
+        'column': 'x speed [mm/s]',
+        'unit': 'mm/s',
+        'time': None,
+    }
+    assert any(says('uneven_texts') in one for one in made.unstated)

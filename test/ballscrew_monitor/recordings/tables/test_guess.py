@@ -230,7 +230,8 @@ def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_s
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-    made = guessed({'Zeit_ms': -TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
+    jagged = np.random.default_rng(5).permutation(TIME)
+    made = guessed({'Zeit_ms': jagged, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('still_time'),)
 
@@ -1056,3 +1057,21 @@ def test_a_torque_of_another_group_has_the_signs_of_all_its_rows(rate, tmp_path,
     result = guess(log)
     assert 'magnitude' not in result.content['axes']['x']['torque']
     assert read_series(log, make_map(result.content))
+
+
+@pytest.mark.parametrize(
+    ('least', 'unit'),
+    [(-30.0, 'degC'), (35.0, 'degC'), (293.0, 'K'), (-90.0, None), (180.0, None)],
+)
+def test_the_unit_of_a_temperature_is_said_or_asked_for_if_no_oil_has_it(
+    least, unit, guessed, says
+):
+    column = 'x oil temperature'
+    warmth = least + 30.0 * np.linspace(0.0, 1.0, len(TIME))
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, column: warmth})
+    told = {'least': f'{least:.3g}', 'most': f'{least + 30.0:.3g}'}
+    if unit is None:
+        assert made.unstated == (says('temperature_of_no_unit', **told),)
+    else:
+        assert says('temperature_taken', unit=unit, **told) in made.notes
+        assert made.content['assumed']['x.temperature.unit']['value'] == unit

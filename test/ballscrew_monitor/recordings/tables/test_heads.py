@@ -6,6 +6,7 @@ import math
 
 from ballscrew_monitor.recordings.tables.heads import find_head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.sources import source_of
 from hypothesis import given, strategies
 import pytest
 
@@ -247,3 +248,20 @@ def test_first_rows_whose_time_goes_on_are_rows(times):
     rows = [f'{time},{max(at, 1)},{at % 5}' for at, time in enumerate(times)]
     found = head_of('\n'.join(['t,v,F', *rows]))
     assert (found.first, found.factors) == (2, '')
+
+
+@pytest.mark.parametrize('names', ['t [s],x position [mm],x load [N]', 'alpha,beta,gamma'])
+@pytest.mark.parametrize('row', ['1,0.01,0.1', '1e-3,10,2'])
+def test_a_row_of_factors_is_found_below_names_of_any_kind(names, row, tmp_path):
+    rows = (f'{100 * at},{1000 + at % 7},{at % 9}' for at in range(60))
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join([names, row, *rows]))
+    assert source_of(path).head.factors == row.replace(',', ' ')
+
+
+def test_a_part_of_a_unit_stays_with_a_name_that_says_nothing(tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text(
+        '\n'.join(['alpha,beta', 's,0.01 mm', *(f'{at},{at % 7}' for at in range(60))])
+    )
+    assert source_of(path).names() == ['alpha [s]', 'beta [0.01 mm]']

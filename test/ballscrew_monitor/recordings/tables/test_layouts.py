@@ -409,3 +409,21 @@ def test_a_row_of_factors_is_asked_for_whatever_stands_behind_the_names(note, tm
     path.write_text('\n'.join([names, 's;mm;N', '1;0,5;1', *rows]))
     axis = guess(path).content['axes']['x']
     assert [axis[name]['scale'] for name in ('position', 'load')] == [None, None]
+
+
+@pytest.mark.parametrize('clock', ['11:59:{:02d};{:03d}', '11:59:{:02d};{}'])
+def test_a_trend_of_rockwell_has_milliseconds_behind_a_semicolon(clock, tmp_path):
+    head = ['"Controller Name:","Mill1"', '"Trend Name:","Axis"', '"Sample Period:","50 ms"']
+    head.append('Header,Date,Time,X_Axis.ActualVelocity')
+    rows = (
+        f'Data,07/14/2025,{clock.format(at // 20, 50 * (at % 20))},{at % 9}' for at in range(300)
+    )
+    path = tmp_path / 'trend.csv'
+    path.write_text('\n'.join([*head, *rows]))
+    content = guess(path).content
+    content['axes']['x']['speed']['unit'] = 'mm/s'
+    content['assumed'].pop('x.speed.unit', None)
+    series = read_series(path, make_map(content))
+    ((block,),) = series.blocks()
+    moments = dt.datetime(2025, 7, 14, 11, 59, tzinfo=dt.UTC).timestamp() + np.arange(300) / 20
+    np.testing.assert_allclose(block.stamps / 1e9, moments, atol=1e-6, rtol=0.0)

@@ -239,3 +239,10 @@ def test_the_quantity_of_another_thing_is_none_of_the_axis(column):
 )
 def test_the_axis_of_all_rows_is_told_by_a_name_and_in_a_file_by_a_letter(text, whole, file):
     assert (axis_of_all(text), axis_of_file(text)) == (whole, file)
+
+
+def test_the_inclined_axis_of_a_lathe_of_okuma_is_y():
+    """YI1actm and YI1actw are names of the public recording of an adapter."""
+    assert [read_name(name).axis for name in ('YI1actm', 'YI1actw', 'Y1actm')] == ['y1'] * 3
+    assert {read_name(name).kind for name in ('YI1actm', 'YI1actw')} == {'position'}
+    assert read_name('YI1load').unit == '%'

@@ -418,3 +418,25 @@ def test_gaps_at_rest_or_between_other_speeds_are_none_of_values_that_stay(read)
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     assert len(read({'t': late, 'v': np.sin(np.arange(400) * np.pi / 200)}).stamps) == 400
     assert len(read({'t': late, 'v': np.where(late > 20.0, 40.0, -40.0)}).stamps) == 400
+
+
+@pytest.mark.parametrize(
+    ('axis', 'column', 'told'),
+    [
+        ('x', 'Y velocity [mm/s]', True),
+        ('x1', 'Z1_ActualVelocity', True),
+        ('x', 'X velocity [mm/s]', False),
+        ('left', 'Y velocity [mm/s]', False),
+        ('x', 'velocity [mm/s]', False),
+    ],
+)
+def test_a_column_that_is_named_after_another_axis_is_said(
+    axis, column, told, tmp_path, write_csv, says
+):
+    log = write_csv(tmp_path / 'log.csv', {'t': np.arange(60) / 10, column: np.arange(60.0)})
+    place = {'lead_mm': 10.0, 'speed': {'column': column, 'unit': 'mm/s'}}
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    series = read_series(log, make_map({'time': time, 'axes': {axis: place}}))
+    other = column[0].lower()
+    sentence = says('of_another_axis', axis=axis, column=column, other=other)
+    assert (sentence in series.notes) == told

@@ -55,6 +55,8 @@ FORMS = {
     'comments': b'# a; comment\n\n' + csv_text().encode(),
     'xlsx': workbook(ROWS),
 }
+ONE_BYTE = ('latin-1', 'cp1252', 'carriage return')
+"""Forms of which a note names the coding."""
 
 
 @pytest.fixture
@@ -74,7 +76,7 @@ def test_a_log_is_the_same_in_each_form(form, log):
     if form != 'comments':
         assert column_names(path, LAYOUT) == NAMES
     table = open_table(path, NAMES[:3])
-    assert not table.notes
+    assert len(table.notes) == (form in ONE_BYTE)
     found = table.head(99)
     np.testing.assert_array_equal(found['Zeit [s]'], np.arange(9) / 10)
     np.testing.assert_array_equal(found['Geschw. [mm/min]'], np.arange(9) * 7 + 0.5)
@@ -269,3 +271,24 @@ def test_a_file_that_holds_nothing_is_told_so(content, tmp_path, refused):
     path.write_bytes(content)
     refused('nothing', sources.source_of, path)
     assert not sources.is_log(path)
+
+
+@pytest.mark.parametrize(
+    ('coding', 'names'),
+    [
+        ('cp1250', ['czas [s]', 'położenie X [mm]', 'prędkość X [mm/s]', 'siła X [N]']),
+        ('cp1250', ['čas [s]', 'poloha X [µm]', 'rychlost X [mm/s]', 'síla X [N]']),
+        ('cp1252', ['Zeit [s]', 'Weg X [µm]', 'Öltemperatur [°C]', 'Kräfte [N]']),
+    ],
+)
+def test_letters_of_one_byte_are_those_that_make_words_and_it_is_said(
+    coding, names, tmp_path, says
+):
+    path = tmp_path / 'log.csv'
+    rows = (f'{at / 10};{at % 7};{at % 5};{at % 3}' for at in range(60))
+    path.write_bytes('\n'.join([';'.join(names), *rows]).encode(coding))
+    source = sources.source_of(path)
+    assert source.names() == names
+    assert source.notes == (says('coding', path=path, coding=coding),)
+    path.write_text('\n'.join([';'.join(names), '0;1;2;3', '1;2;3;4']), encoding='utf-8')
+    assert sources.source_of(path).notes == ()

@@ -287,7 +287,7 @@ def test_a_run_of_few_rows_at_the_end_begins_again_too(count, more, block):
 
 @given(st.integers(12, 60), st.integers(1, 40))
 def test_a_column_that_falls_is_no_time(count, block):
-    assert gated(np.arange(count)[::-1] / 10.0, block).fault()[0].startswith('it does not rise')
+    assert gated(np.arange(count)[::-1] / 10.0, block).fault()[0].startswith('it falls from row to row')
 
 
 @given(
@@ -359,3 +359,52 @@ def test_the_forms_of_the_manual_are_read(form):
 @pytest.mark.parametrize('unit', STATED)
 def test_a_unit_in_the_name_is_that_of_the_time(unit):
     assert outcome(f'Time [{unit}]', STATED[unit], 50.0) == pytest.approx(50.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ('unit', 'first', 'wrap', 'period'),
+    [
+        ('ms', 2**32 - 1000, 2**32, 2**32),
+        ('us', 2**31 - 70_000, 2**31, 2**31),
+        ('ms', 86_399_000, 86_400_000, 86_400_000),
+        ('ms', 2**31 - 1000, 2**31, 2**32),
+    ],
+)
+def test_a_counter_that_begins_again_goes_on_where_its_steps_do(
+    unit, first, wrap, period, read, says
+):
+    """The last of them counts on from -2^31, as whole numbers with a sign do."""
+    step = 20 if unit == 'ms' else 1000
+    counted = first + step * np.arange(120)
+    told = np.where(counted < wrap, counted, counted - period)
+    series = read(told.tolist(), unit=unit, epoch=EPOCH)
+    ((rows,),) = series.blocks()
+    factor = {'ms': 10**6, 'us': 10**3}[unit]
+    np.testing.assert_allclose(
+        rows.stamps - rows.stamps[0], factor * step * np.arange(120), atol=2e3
+    )
+    row, seconds = 2 + int((counted < wrap).sum()), period * factor / 1e9
+    assert says('wraps', seconds=f'{seconds:.10g}', row=row) in ' '.join(series.notes)
+    later = told + 300 * step * (counted >= wrap)  # no regular step
+    assert len(read(later.tolist(), unit=unit, epoch=EPOCH).run_begins) == 2
+
+
+def test_slow_samples_follow_the_counter_of_the_motion(read):
+    counted = 2**32 - 1000 + 20 * np.arange(400)
+    warmth = ['' if at % 37 else 40.0 + at for at in range(400)]  # a few rows behind the wrap
+    series = read((counted % 2**32).tolist(), temperatures=warmth, unit='ms', epoch=EPOCH)
+    stamps = np.concatenate([rows[1].stamps for rows in series.blocks()])
+    np.testing.assert_allclose(np.diff(stamps), 37 * 20e6, atol=2e3)
+
+
+@pytest.mark.parametrize('form', ['{:.1f}', '2025-07-14 12:00:{:04.1f}', '12:00:{:04.1f}'])
+@pytest.mark.parametrize('count', [9, 300])
+def test_a_table_with_the_newest_row_first_is_to_be_turned_round(form, count, tmp_path, refused):
+    path = tmp_path / 'log.csv'
+    times = (form.format(0.1 * (count - at)) for at in range(count))
+    rows = (f'{time},{at % 7},1.0' for at, time in enumerate(times))
+    path.write_text('\n'.join(['time [s],x speed [mm/s],x load [N]', *rows]))
+    refused('newest_first', guess, path)
+    column = {'column': 'time [s]', 'unit': 's', 'epoch': EPOCH}
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'x speed [mm/s]', 'unit': 'mm/s'}}
+    refused('newest_first', read_series, path, make_map({'time': column, 'axes': {'x': axis}}))

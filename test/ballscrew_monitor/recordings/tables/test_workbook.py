@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A workbook is refused before it is read if its cells come to too much, however they are told."""
 
+import datetime as dt
 import io
 import json
 import re
@@ -16,6 +17,7 @@ from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.workbook import read_sheet, write_cells
 import openpyxl
+from openpyxl.utils.datetime import CALENDAR_MAC_1904, CALENDAR_WINDOWS_1900, to_excel
 import polars as pl
 import pytest
 from surrogate.files import limits
@@ -302,3 +304,29 @@ def test_hidden_rows_of_a_workbook_are_read_and_counted_in_a_sentence(tmp_path):
     series = read_series(path, make_map(guess(path).content))
     assert series.count == 100
     assert any('30 rows of its sheets are hidden' in note for note in series.notes)
+
+
+@pytest.mark.parametrize('as_cells', [lambda moment, epoch: moment, to_excel])
+@pytest.mark.parametrize('epoch', [CALENDAR_WINDOWS_1900, CALENDAR_MAC_1904])
+def test_days_of_a_workbook_count_from_its_epoch(as_cells, epoch, tmp_path, says):
+    made, path = openpyxl.Workbook(), tmp_path / 'log.xlsx'
+    made.epoch, begin = epoch, dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
+    made.active.append(['time', 'x velocity [mm/s]'])
+    for row in range(60):
+        moment = begin.replace(tzinfo=None) + dt.timedelta(seconds=row)
+        made.active.append([as_cells(moment, epoch), row])
+    made.save(path)
+    series = read_series(path, make_map(guess(path).content))
+    assert series.begin / 1e9 == pytest.approx(begin.timestamp(), abs=1e-3)
+    assert series.usual_period == pytest.approx(1.0, abs=1e-3)
+    corrected = as_cells is to_excel and epoch == CALENDAR_MAC_1904
+    assert (says('from_1904', path=path) in series.notes) == corrected
+
+
+def test_a_time_of_day_in_a_workbook_from_1904_has_no_day(tmp_path):
+    made, path = openpyxl.Workbook(), tmp_path / 'log.xlsx'
+    made.epoch = CALENDAR_MAC_1904
+    for row in range(30):
+        made.active.append([dt.time(12, 0, row), 1.0, 2.0])
+    made.save(path)
+    assert read_sheet(path).cells.row(29)[0] == '12:00:29'
