@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from surrogate.files import limits
 
-STEP, COUNT = 0.01, 250
+STEP, COUNT = 0.01, 500
 TIME = np.arange(COUNT) * STEP
 SPEED = 90.0 * np.sin(math.tau * TIME)  # [mm/s]
 PLACE = 150.0 + 90.0 / math.tau * (1.0 - np.cos(math.tau * TIME))  # [mm]
