@@ -75,7 +75,8 @@ def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> boo
     """Return True if the rows of a part [s] follow each other otherwise than those before it."""
     quantile, most = EVEN
     steps = np.diff(before)
-    if float(np.quantile(steps[steps > 0.0], quantile)) > most * step:
+    rising = steps[steps > 0.0]
+    if not len(rising) or float(np.quantile(rising, quantile)) > most * step:
         return False  # no even log
     if len(part) < 2:
         return is_apart and part[0] - before[-1] > LONG * step

@@ -35,6 +35,7 @@ SUMMER = (3, 9, 10)  # months in which clocks are set on, in the north and in th
 SUNDAY = 6
 NIGHT = 4  # o'clock, before which that is
 FEWEST = 20  # rows of a run, on average, of more than a few
+FEWEST_FALLS = 2  # more are no runs of a few rows
 FEW_RISES = 0.01  # of the falls of a table with the newest row first, as at midnights
 RUNS = 1000  # more runs than any logger appends
 INSTEAD = 'state time.rate_Hz instead of time.column in the map'
@@ -226,7 +227,7 @@ class TimeGate:
     def falls(self) -> bool:
         """Return True if the newest row stands first: times fall, and next to none rises."""
         rising = self.count - 1 - self._equal - self._fallen
-        return self._unordered and rising <= FEW_RISES * self._fallen
+        return self._fallen > FEWEST_FALLS and rising <= FEW_RISES * self._fallen
 
     @property
     def limits(self) -> tuple[float, float]:

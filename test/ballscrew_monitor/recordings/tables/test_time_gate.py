@@ -409,3 +409,20 @@ def test_a_table_with_the_newest_row_first_is_to_be_turned_round(form, count, tm
     column = {'column': 'time [s]', 'unit': 's', 'epoch': EPOCH}
     axis = {'lead_mm': 10.0, 'speed': {'column': 'x speed [mm/s]', 'unit': 'mm/s'}}
     refused('newest_first', read_series, path, make_map({'time': column, 'axes': {'x': axis}}))
+
+
+@pytest.mark.parametrize('column', ['x speed [mm/s]', 'x position [mm]'])
+def test_whole_seconds_with_the_newest_row_first_are_no_log_without_time(column, tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = (f'2025-07-14 12:00:{9 - at // 50:02d},{at % 70}.0,1.0' for at in range(500))
+    path.write_text('\n'.join([f'time,{column},x load [N]', *rows]))
+    with pytest.raises(InputError, match='the newest row stands first: row 52 has '):
+        guess(path)
+
+
+def test_two_exports_with_the_newest_row_first_are_refused_in_a_sentence(tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = (f'{(499 - at % 500) / 50},{at % 7},1.0' for at in range(1000))
+    path.write_text('\n'.join(['time [s],x speed [mm/s],x load [N]', *rows]))
+    with pytest.raises(InputError, match='split the log there|newest row stands first'):
+        guess(path)
