@@ -18,6 +18,7 @@ import numpy as np
 from surrogate.units import MILLI, TURN
 
 OF_DEGF = 'scale 0.555556 and offset -17.7778 make of it'
+WARM = 50.0  # [degC] from which on numbers may as well be of degF, a cool machine
 TURNS = 6.3  # range of a joint from which its unit is no metre
 OF_JOINT = {'position': 'rad', 'speed': 'rad/s', 'torque': 'N m'}
 """Units of a joint that turns."""
@@ -91,6 +92,8 @@ def _of_temperature(draft: Draft, name: str, column: str) -> tuple[str, str]:
     least, most = draft.log.extremes[column]
     coldest, hottest = NUMBERS['temperature_degC']
     told = f'its values are {least:.3g} to {most:.3g}'
+    if WARM <= least and most <= hottest:
+        return '', f'{column} states none and may be in degF, {told}: unit degC, {OF_DEGF}'
     unit = 'degC' if coldest <= least and most <= hottest else 'K' if least > hottest else ''
     if not unit:
         return '', f'{column} states none that is known, and {told}'

@@ -1075,3 +1075,10 @@ def test_the_unit_of_a_temperature_is_said_or_asked_for_if_no_oil_has_it(
     else:
         assert says('temperature_taken', unit=unit, **told) in made.notes
         assert made.content['assumed']['x.temperature.unit']['value'] == unit
+
+
+def test_a_warm_temperature_without_a_unit_may_be_in_degF(guessed, says):
+    """68 degF are 20 degC, and 68 degC another oil."""
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x oil temperature': 68.0 + 0.1 * TIME})
+    least, most = '68', f'{68.0 + 0.1 * TIME[-1]:.3g}'
+    assert made.unstated == (says('temperature_maybe_in_degF', least=least, most=most),)
