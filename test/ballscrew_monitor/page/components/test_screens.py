@@ -30,6 +30,15 @@ PARTS = (
     *('.card', '.sign', '.told p', '.numbers > div', '.input', '.link'),
     *('.what-if', '.strips', '.health', '.events', '.events tbody tr'),
 )
+HEARD = """
+    window.heard = 0;  // frames that the page has taken
+    window.WebSocket = class extends WebSocket {
+      constructor(...given) {
+        super(...given);
+        this.addEventListener('message', () => { window.heard += 1; });
+      }
+    };
+"""
 QUIET = """
     document.querySelector('.sign.level .word')?.textContent
     && page.painter.views.every((view) => !view.news)
@@ -162,7 +171,9 @@ def show(tab, server, frames, name):
     """Open the page in a state, and return what of it is seen and its picture."""
     server.greeting = States(frames).greeting(name)
     width, height = PHONE if name == 'phone' else WIDE
+    tab.call('Page.addScriptToEvaluateOnNewDocument', source=HEARD)
     tab.visit(server.url, width=width, height=height)
+    tab.until(f'window.heard >= {len(server.greeting)}')
     tab.until(QUIET)
     return seen(tab, width, height)
 
