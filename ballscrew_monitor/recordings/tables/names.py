@@ -248,10 +248,8 @@ def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
 
 def _parted(match: re.Match[str]) -> str:
     """Return axis and quantity of a word that joins them, apart."""
-    axis, word = (
-        (match['axis'] or match['of']).replace('I', ''),
-        match['word'] or match['letter'].lower(),
-    )
+    axis = (match['axis'] or match['of']).replace('I', '')
+    word = match['word'] or match['letter'].lower()
     return f'{axis} {JOINED_WORDS.get(word, word)} '
 
 
