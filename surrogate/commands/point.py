@@ -3,6 +3,7 @@
 """The subcommand `point`: solve the screw at one operating point."""
 
 import argparse
+from dataclasses import replace
 import functools
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,8 @@ from surrogate.parameters import (
     Screw,
     screw_and_oil,
 )
-from surrogate.surface.file import read
-from surrogate.surface.shipped import SHIPPED_TIERS
+from surrogate.surface.file import read, SurfaceError
+from surrogate.surface.shipped import shipped_surface, SHIPPED_TIERS
 from surrogate.tasks.progress import Progress
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -66,7 +67,8 @@ def add_inputs(parser: argparse.ArgumentParser) -> None:
         '--screw',
         default='nominal',
         metavar='NAME|FILE',
-        help='screw datasheet (default nominal), or a surface (.npz) with its marches',
+        help='screw datasheet (default nominal), one that is shipped with the marches of its '
+        'surface; or a surface (.npz) with its marches',
     )
     parser.add_argument(
         '--oil',
@@ -96,9 +98,23 @@ def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
 
 
 def _sheets(screw: str) -> tuple[Screw, Lubricant]:
-    if not screw.endswith('.npz'):
-        return load_screw(screw), load_lubricant('iso_vg_68')
-    return screw_and_oil(read(screw).header['inputs'])
+    if screw.endswith('.npz'):
+        return screw_and_oil(read(screw).header['inputs'])
+    lubricant = load_lubricant('iso_vg_68')
+    return _as_shipped(load_screw(screw), lubricant), lubricant
+
+
+def _as_shipped(screw: Screw, lubricant: Lubricant) -> Screw:
+    """Return a shipped screw with the marches of its shipped surface, any other as it is."""
+    try:
+        path = shipped_surface(screw.name, lubricant.name, SHIPPED_TIERS[0])
+    except SurfaceError:
+        return screw
+    stated = read(path).header['inputs']['screw']
+    raceway = stated['roughness']
+    marches = {name: raceway[name] for name in screw.roughness.MARCHED if name in raceway}
+    marched = replace(screw, roughness=replace(screw.roughness, **marches))
+    return marched if marched.stated() == stated else screw
 
 
 def examine(screw: Screw, *, verbose: bool = False) -> None:

@@ -35,6 +35,9 @@ WITHIN = {'isotropic': 0.045, 'longitudinal': 0.11, 'transverse': 0.135}
 [-]: 28 strips of 7, 36 of 9, 16 of 4 own screws, pooled by `studies/own_strips.py: within`."""
 FEWEST = 2
 """Strips with an onset that correct the law, at least [-]."""
+FAR_APART = 4.12
+"""Range of three normal numbers over their deviation that one of a hundred exceeds [-]: Pearson and
+Hartley, Biometrika Tables for Statisticians, volume 1, 3rd edition 1966, table 22."""
 
 
 def march_tasks(
@@ -119,12 +122,7 @@ def marched_film(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> dict[str,
     posterior prediction of one more strip [-]. So no strips would leave the law, many their mean.
 
     """
-    least, most = FILM_FACTORS
-    logs = {
-        name: math.log(strip['film_factor'])
-        for name, strip in strips.items()
-        if strip['film_factor'] is not None and least <= strip['film_factor'] <= most
-    }
+    logs = log_factors(strips)
     finer = logs.pop(FINER, math.nan)
     if len(logs) < FEWEST:
         return {}
@@ -137,3 +135,26 @@ def marched_film(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> dict[str,
         'marched_film': math.exp(weight * sum(logs.values()) / len(logs)),
         'marched_error': math.sqrt(weight * mean_error + within),
     }
+
+
+def log_factors(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """Return the logarithms of the film factors of strips that can correct the law, by name [-]."""
+    least, most = FILM_FACTORS
+    return {
+        name: math.log(strip['film_factor'])
+        for name, strip in strips.items()
+        if strip['film_factor'] is not None and least <= strip['film_factor'] <= most
+    }
+
+
+def strips_apart(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> str | None:
+    """Return in a sentence that strips differ more than those of a raceway of its lay do, or None."""
+    logs = [log for name, log in log_factors(strips).items() if name != FINER]
+    apart, usual = max(logs, default=0.0) - min(logs, default=0.0), FAR_APART * WITHIN[lay]
+    if apart <= usual:
+        return None
+    return (
+        f'films of the strips of this raceway differ by a factor of {math.exp(apart):.2f}, those of '
+        f'other {lay} raceways by {math.exp(usual):.2f} at most in 99 of 100: the stated range of '
+        'the onset may be too narrow'
+    )

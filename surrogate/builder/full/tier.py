@@ -14,10 +14,11 @@ import numpy as np
 from surrogate.builder.closed_form import provenance
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain, WORK
-from surrogate.builder.full.march import march_task, march_tasks, marched_film
+from surrogate.builder.full.march import march_task, march_tasks, marched_film, strips_apart
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
+from surrogate.raceway.stated import Roughness
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
@@ -80,13 +81,16 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    With `march`, strips of the raceway are marched first, stand in the header and correct the law.
+    With `march`, strips of the raceway are marched first, stand in the header and correct the law,
+    whatever marches the sheet states.
     Says on stderr where the accuracy aimed at was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
     """
     began = time.perf_counter()
+    if march:
+        screw = with_raceway(screw, **dict.fromkeys(Roughness.MARCHED))
     with TaskStore(out, WORK) as store:
         run = TaskRun(pool=pool, store=store)
         tasks = march_tasks(screw, lubricant) if march else {}
@@ -110,9 +114,11 @@ def build_full_surface(
 
 def shortfalls(data: SurfaceData) -> Iterator[str]:
     """Yield a sentence on marches, accuracy that was not reached and nodes that are missing."""
-    marched = data.header['inputs']['screw']['roughness'].get('marched_film')
-    if 'march' in data.header and marched is None:
+    raceway, strips = data.header['inputs']['screw']['roughness'], data.header.get('march', {})
+    if 'march' in data.header and raceway.get('marched_film') is None:
         yield 'too few strips show where contact begins: the law alone tells it'
+    elif apart := strips_apart(strips, raceway['lay']):
+        yield apart
     reached = data.header['reached']
     if reached is None:
         yield 'accuracy is not known: no held-out point was solved'

@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The onset command as a user types it: how summits are cut stands in the sheet of the screw."""
 
+import argparse
 import json
 
 import pytest
+from surrogate.commands.point import load_inputs
 from surrogate.files import InputError
-from surrogate.parameters import DATA
+from surrogate.parameters import DATA, load_screw
+from surrogate.surface.file import read
+from surrogate.surface.shipped import shipped_surface
 
 pytestmark = pytest.mark.usefixtures('small_tiles')
 COMMAND = ('onset',)
@@ -61,3 +65,25 @@ def test_a_picture_is_drawn_where_it_is_asked_for(run, tmp_path):
     pytest.importorskip('matplotlib')
     assert run('--screw', 'nominal', '--oil', 'iso_vg_68', '--plot', tmp_path / 'deep') == 0
     assert [path.name for path in (tmp_path / 'deep').iterdir()] == ['onset_nominal_iso_vg_68.png']
+
+
+def test_a_shipped_screw_comes_with_the_marches_of_its_surface(tmp_path):
+    """As another name for the same surface; a sheet that differs from the shipped one has none."""
+    name = 'iso3408_16x5'
+    stated = read(shipped_surface(name)).header['inputs']['screw']
+    shipped, surface, changed = (
+        load_inputs(argparse.Namespace(screw=str(screw), oil='iso_vg_32', verbose=False))[0]
+        for screw in (name, shipped_surface(name), other_sheet(tmp_path, name))
+    )
+    assert shipped.stated() == surface.stated() == stated
+    assert shipped.service() == load_screw(name).service()
+    assert shipped.roughness.marched_film is not None
+    assert changed.roughness.marched_film is None
+
+
+def other_sheet(folder, name):
+    """Return the path of a shipped sheet with another fan of its ridges."""
+    text = (DATA / 'screws' / f'{name}.yaml').read_text(encoding='utf-8')
+    path = folder / 'sheet.yaml'
+    path.write_text(text.replace('fan_angle_deg: 10.0', 'fan_angle_deg: 12.0'), encoding='utf-8')
+    return path

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import studentized_range
 from surrogate.asperities.law import FILM_BANDS
 from surrogate.builder import tiers
 from surrogate.builder.full import march
@@ -162,6 +163,17 @@ def test_strips_that_were_held_out_lie_within_what_is_stated(raceways):
     assert len(raceways) == 20
     assert inside['strip 4'] >= 18
     assert sum(inside.values()) >= 0.87 * 80
+
+
+def test_strips_that_lie_too_far_apart_are_told(built, capsys):
+    """By the range of three normal numbers that one of a hundred exceeds; finer waves are apart."""
+    assert march.FAR_APART == pytest.approx(studentized_range.ppf(0.99, 3, math.inf), abs=0.005)
+    usual = math.exp(march.FAR_APART * WITHIN['isotropic'])
+    near = {name: strip(factor=usual**part) for name, part in (('strip 1', 0), ('strip 2', 0.99))}
+    assert march.strips_apart(near | {FINER: strip(factor=2.0)}, 'isotropic') is None
+    assert march.strips_apart({'strip 1': NEVER}, 'isotropic') is None
+    built({0: strip(factor=0.7), 1: strip(factor=1.4)})
+    assert 'films of the strips of this raceway differ by a factor of 2.00' in capsys.readouterr().err
 
 
 def test_one_strip_alone_corrects_nothing():
