@@ -5,10 +5,9 @@ Own screws, their raceways marched as `surface build` does, and a fourth strip h
 
 Usage: python studies/own_strips.py [--report].
 
-Each strip that ends is added to results/own_strips_confined.csv at once, and one that is there is
-not marched again. Those of results/own_strips.csv were marched on tiles whose summits were cut at
-their hardness alone. Last it prints by how much strips of a raceway differ, how the corrected law
-tells those that were held out, and how both cuts differ.
+Each strip that ends is added to results/own_strips.csv at once, and one that is there is not
+marched again. Last it prints by how much strips of a raceway differ, and how the corrected law
+tells those that were held out.
 
 """
 
@@ -29,9 +28,6 @@ from surrogate.raceway.stated import NINE_OF_TEN, State
 from surrogate.tasks.table import read_table, write_table
 
 RESULTS = Path('studies/results/own_strips.csv')
-"""Strips of tiles whose summits were cut at their hardness, without the mean pressure."""
-CONFINED = Path('studies/results/own_strips_confined.csv')
-"""Strips of the tiles that a build marches."""
 HELD_OUT = 'strip 4'
 """Name of the strip that corrects nothing."""
 COARSE = 1, 2, 3, 4
@@ -176,14 +172,6 @@ def raceways(rows: Sequence[Strip]) -> dict[int, dict[str, Strip]]:
     }
 
 
-def newest(alone: Sequence[Strip], confined: Sequence[Strip]) -> list[Strip]:
-    """Return the strips as built of raceways whose coarse ones touch, else those cut alone."""
-    names = {f'strip {number}' for number in COARSE}
-    there = {number for number, strips in raceways(confined).items() if names <= {*strips}}
-    kept = [row for row in alone if row.own not in there]
-    return kept + [row for row in confined if row.own in there]
-
-
 def within(rows: Sequence[Strip], lay: str) -> tuple[float, int]:
     """Return the pooled deviation of coarse strips of a raceway in logarithms [-], and strips."""
     logs = [
@@ -244,15 +232,6 @@ def coverage(part: Sequence[Mapping[str, Strip]]) -> Iterator[str]:
         yield f'{which} {inside} of {len(known)} inside, {near} inside or within {WANTED}'
 
 
-def confined_over_alone(alone: Sequence[Strip], confined: Sequence[Strip]) -> Iterator[str]:
-    """Yield films over that of the law of tiles as built, and over that with the other cut [-]."""
-    known = {(row.own, row.strip, row.side): row.film_factor for row in alone}
-    for row in confined:
-        text = f'{1 + row.own} {row.lay}, {row.strip}, as built: {row.film_factor:.2f}'
-        cut_alone = known.get((row.own, row.strip, row.side))
-        yield f'{text}, {row.film_factor / cut_alone:.2f} of the other cut' if cut_alone else text
-
-
 def wanted() -> Iterator[tuple[int, str, dict[str, Any]]]:
     """Yield all strips: of every screw the coarse ones, then the finer ones."""
     for finer in (False, True):
@@ -267,16 +246,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--report', action='store_true', help='march nothing')
     if not parser.parse_args().report:
-        there = {(row.own, row.strip) for row in read_table(CONFINED, Strip)}
+        there = {(row.own, row.strip) for row in read_table(RESULTS, Strip)}
         for number, name, task in wanted():
             if (number, name) not in there:
                 strip = march(number, name, OWN[number].lay, task)
-                write_table(CONFINED, Strip, [*read_table(CONFINED, Strip), strip], digits=5)
+                write_table(RESULTS, Strip, [*read_table(RESULTS, Strip), strip], digits=5)
                 print(strip, flush=True)
-    alone, confined = (read_table(path, Strip) for path in (RESULTS, CONFINED))
-    print('Cut at the hardness alone:', *report(alone), sep='\n')
-    print('As built:', *report(confined), *confined_over_alone(alone, confined), sep='\n')
-    print('As built where four were marched:', *report(newest(alone, confined)), sep='\n')
+    print(*report(read_table(RESULTS, Strip)), sep='\n')
 
 
 if __name__ == '__main__':

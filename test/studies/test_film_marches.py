@@ -76,7 +76,7 @@ def test_the_law_tells_the_film_of_designed_marches_held_out_from_its_fit(marche
 
 @pytest.mark.parametrize(
     ('lay', 'strips', 'raceways', 'rms'),
-    [('isotropic', 33, 12, 0.11), ('longitudinal', 40, 13, 0.21), ('transverse', 18, 6, 0.12)],
+    [('isotropic', 33, 12, 0.13), ('longitudinal', 40, 13, 0.13), ('transverse', 18, 6, 0.14)],
 )
 def test_the_law_tells_the_film_of_strips_held_out_from_its_fit(
     held_out, lay, strips, raceways, rms
@@ -84,15 +84,6 @@ def test_the_law_tells_the_film_of_strips_held_out_from_its_fit(
     part = [strip for strip in held_out if strip.lay == lay]
     assert (len(part), len({strip.raceway for strip in part})) == (strips, raceways)
     assert math.sqrt(np.mean([strip.miss**2 for strip in part])) < rms
-
-
-def test_one_raceway_has_all_longitudinal_strips_outside_the_band(held_out):
-    """Few summits of it touch; without it the rms is that of the other lays."""
-    part = [strip for strip in held_out if strip.lay == 'longitudinal']
-    band = math.log(FILM_BANDS['longitudinal'])
-    assert {strip.raceway for strip in part if abs(strip.miss) > band} == {'own 12'}
-    others = [strip.miss for strip in part if strip.raceway != 'own 12']
-    assert math.sqrt(np.mean(np.square(others))) < 0.11
 
 
 def test_nine_of_ten_held_out_marches_lie_in_the_band_that_is_stated(marches, rows):

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Strips of a raceway that correct the law, and how a build tells them."""
 
+import csv
 from dataclasses import replace
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ from surrogate.surface.file import read
 from surrogate.surface_tools.describe import march_lines
 
 SHIPPED = read(shipped_surface(tier='full'))
+OWN_STRIPS = Path(__file__).parents[4] / 'studies' / 'results' / 'own_strips.csv'
 
 
 def strip(onset=0.1, factor=0.91):
@@ -129,12 +132,13 @@ def test_a_drawn_raceway_has_its_next_strip_inside_nine_times_of_ten():
 
 
 @pytest.fixture(name='raceways')
-def read_raceways(table):
-    """Return the lay and the strips by name of each own screw."""
+def read_raceways():
+    """Return the lay and the strips by name of each own screw, as `studies/own_strips.py` marched."""
     raceways = {}
-    for row in table('own_strips.csv'):
-        _, strips = raceways.setdefault(row['own'], (row['lay'], {}))
-        strips[row['strip']] = strip(factor=float(row['film_factor']))
+    with OWN_STRIPS.open(newline='') as file:
+        for row in csv.DictReader(file):
+            _, strips = raceways.setdefault(row['own'], (row['lay'], {}))
+            strips[row['strip']] = strip(factor=float(row['film_factor']))
     return raceways
 
 
