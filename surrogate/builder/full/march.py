@@ -36,8 +36,8 @@ WITHIN = {'isotropic': 0.052, 'longitudinal': 0.114, 'transverse': 0.136}
 FEWEST = 2
 """Strips with an onset that correct the law, at least [-]."""
 FAR_APART = 4.12
-"""Range of three normal numbers over their deviation that one of a hundred exceeds [-]: Pearson and
-Hartley, Biometrika Tables for Statisticians, volume 1, 3rd edition 1966, table 22."""
+"""Range of three normal numbers over their deviation that one of a hundred exceeds [-]: Pearson
+and Hartley, Biometrika Tables for Statisticians, volume 1, 3rd edition 1966, table 22."""
 
 
 def march_tasks(
@@ -138,7 +138,7 @@ def marched_film(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> dict[str,
 
 
 def log_factors(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
-    """Return the logarithms of the film factors of strips that can correct the law, by name [-]."""
+    """Return logarithms of the film factors of strips that can correct the law [-], by name."""
     least, most = FILM_FACTORS
     return {
         name: math.log(strip['film_factor'])
@@ -148,13 +148,13 @@ def log_factors(strips: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
 
 
 def strips_apart(strips: Mapping[str, Mapping[str, Any]], lay: Lay) -> str | None:
-    """Return in a sentence that strips differ more than those of a raceway of its lay do, or None."""
+    """Return a sentence if strips differ more than those of one raceway of this lay do."""
     logs = [log for name, log in log_factors(strips).items() if name != FINER]
     apart, usual = max(logs, default=0.0) - min(logs, default=0.0), FAR_APART * WITHIN[lay]
     if apart <= usual:
         return None
     return (
-        f'films of the strips of this raceway differ by a factor of {math.exp(apart):.2f}, those of '
-        f'other {lay} raceways by {math.exp(usual):.2f} at most in 99 of 100: the stated range of '
-        'the onset may be too narrow'
+        f'films of the strips of this raceway differ by a factor of {math.exp(apart):.2f}, those '
+        f'of 99 in 100 {lay} raceways by {math.exp(usual):.2f} at most: the stated range of the '
+        'onset may be too narrow'
     )

@@ -133,7 +133,7 @@ def test_a_drawn_raceway_has_its_next_strip_inside_nine_times_of_ten():
 
 @pytest.fixture(name='raceways')
 def read_raceways():
-    """Return the lay and the strips by name of each own screw, as `studies/own_strips.py` marched."""
+    """Return the lay and the strips by name of each own screw that was marched."""
     raceways = {}
     with OWN_STRIPS.open(newline='') as file:
         for row in csv.DictReader(file):
@@ -170,14 +170,14 @@ def test_strips_that_were_held_out_lie_within_what_is_stated(raceways):
 
 
 def test_strips_that_lie_too_far_apart_are_told(built, capsys):
-    """By the range of three normal numbers that one of a hundred exceeds; finer waves are apart."""
+    """By the range of three normal numbers that one of a hundred exceeds; finer ones apart."""
     assert march.FAR_APART == pytest.approx(studentized_range.ppf(0.99, 3, math.inf), abs=0.005)
     usual = math.exp(march.FAR_APART * WITHIN['isotropic'])
     near = {name: strip(factor=usual**part) for name, part in (('strip 1', 0), ('strip 2', 0.99))}
     assert march.strips_apart(near | {FINER: strip(factor=2.0)}, 'isotropic') is None
     assert march.strips_apart({'strip 1': NEVER}, 'isotropic') is None
     built({0: strip(factor=0.7), 1: strip(factor=1.4)})
-    assert 'films of the strips of this raceway differ by a factor of 2.00' in capsys.readouterr().err
+    assert 'raceway differ by a factor of 2.00' in capsys.readouterr().err
 
 
 def test_one_strip_alone_corrects_nothing():
