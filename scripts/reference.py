@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.tables.quantities import UNITS
 from ballscrew_monitor.settings.parameter_row import ParameterRow
 from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, NODE_ROWS
 from ballscrew_monitor.settings.parameters import default_of, NODE_NAME
-from surrogate.contact import case, rolling_record
+from surrogate.contact import case
 from surrogate.contact import record as contact_record
 from surrogate.files.datasheet import key_of
 from surrogate.parameters import Lubricant, Material, Screw
@@ -293,7 +293,7 @@ def json_page() -> str:
         'Each of `contacts`, full tier, besides': full_record.CONTACT_KEYS,
         '`ballscrew point --sensitivity`': sensitivity.KEYS,
         '`ballscrew contact`': contact_record.KEYS,
-        '`ballscrew contact`, a roughness that rolls': rolling_record.KEYS,
+        '`ballscrew contact`, a roughness that rolls': contact_record.ROLLING_KEYS,
     }
     parts = ['Units are SI and part of the key. A number that is not known is `null`.']
     for title, keys in records.items():

@@ -23,19 +23,13 @@ def add_contact_command(subparsers: Any) -> None:
 def _contact(args: argparse.Namespace) -> int:
     """Solve a case; exit code 1 when the solution is not converged."""
     from surrogate.contact.case import load_case
+    from surrogate.contact.record import contact_page, contact_record
 
     # What was done to a surface belongs to the result, so it is said whatever the output.
     logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
     case = load_case(args.case)
-    return (_rolling if case.kinematics == 'rolling' else _standing)(case, args)
-
-
-def _standing(case: Any, args: argparse.Namespace) -> int:
-    from surrogate.contact.record import contact_page, contact_record
-    from surrogate.contact.solve import solve_case
-
-    solution, surface = solve_case(case)
-    record = contact_record(case, solution)
+    solution, surface = _solved(case)
+    record = contact_record(case, solution, surface)
     show(record, lambda record: contact_page(record, case, solution, surface), json=args.json)
     if args.plot:
         from surrogate.contact.figures import draw_contact
@@ -44,9 +38,12 @@ def _standing(case: Any, args: argparse.Namespace) -> int:
     return 0 if solution.converged else 1
 
 
-def _rolling(case: Any, args: argparse.Namespace) -> int:
+def _solved(case: Any) -> tuple[Any, Any]:
+    if case.kinematics == 'standing':
+        from surrogate.contact.solve import solve_case
+
+        return solve_case(case)
     from surrogate.contact.rolling import march_case
-    from surrogate.contact.rolling_record import rolling_page, rolling_record
     from surrogate.ehl.watch import Iteration, watched
 
     progress = Progress(0, 'steps')
@@ -57,13 +54,6 @@ def _rolling(case: Any, args: argparse.Namespace) -> int:
 
     try:
         with watched(show_step):
-            solution, surface = march_case(case)
+            return march_case(case)
     finally:
         progress.close()
-    record = rolling_record(case, solution, surface)
-    show(record, lambda record: rolling_page(record, case, solution), json=args.json)
-    if args.plot:
-        from surrogate.contact.rolling_figure import draw_rolling
-
-        draw_into(args.plot, lambda folder: draw_rolling(folder, solution))
-    return 0 if solution.converged else 1

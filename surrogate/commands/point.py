@@ -39,9 +39,8 @@ def add_point_command(subparsers: Any) -> None:
     )
     parser.add_argument(
         '--kinematics',
-        choices=('rolling', 'standing', 'smooth'),
-        help='full tier: roughness that rolls with the raceway (default), or for comparison '
-        'stands still, or none',
+        choices=('rolling', 'smooth'),
+        help='full tier: roughness that rolls with the raceway (default), or none',
     )
     parser.add_argument(
         '--isothermal', action='store_true', help='films that shear in the inlet does not thin'

@@ -9,7 +9,6 @@ tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area, up to th
 """
 
 from dataclasses import dataclass
-from typing import get_args, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +20,6 @@ from surrogate.formulas.lubricant import (
 )
 
 Array = NDArray[np.float64]
-Film = Literal['local', 'central']
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,25 +92,21 @@ def node_strengths(
     *,
     asperity_friction: float = 0.1,
     asperity_share: float | None = None,
-    film: Film = 'local',
 ) -> NodeStrengths:
     """
     Return the strengths of all nodes of a solved contact, arrays on the grid.
 
     Boundary coefficient [-] of punctured nodes; with an `asperity_share` [-], known from
     elsewhere, every node has that share of boundary friction and shears the rest of its oil.
-    `film` shears the local or the central film. Raises InputError for options that make no sense.
+    Raises InputError for options that make no sense.
 
     """
     if not 0 <= asperity_friction <= 1:
         raise InputError(f'asperity_friction is {asperity_friction!r}, allowed is 0 to 1')
-    if film not in get_args(Film):
-        raise InputError(f'film is {film!r}, allowed is local or central')
     x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
     area, stress = solution.node_area, solution.lubricant.eyring_stress
-    thickness = solution.film if film == 'local' else np.full_like(x, solution.central_film)
     dry = punctured_nodes(solution)
-    wet = ~dry & (solution.film_pressure > 0) & (thickness > 0)
+    wet = ~dry & (solution.film_pressure > 0) & (solution.film > 0)
     viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
     touching = dry.astype(float) if asperity_share is None else np.full(x.shape, asperity_share)
     limit, share = np.full(x.shape, np.inf), solution.lubricant.limiting_shear_share
@@ -125,7 +119,7 @@ def node_strengths(
         boundary=touching * asperity_friction * solution.pressure * area,
         eyring=np.where(wet, (1 - touching) * stress * area, 0.0),
         limit=limit,
-        rate=np.divide(viscosity, stress * thickness, out=np.zeros_like(x), where=wet),
+        rate=np.divide(viscosity, stress * solution.film, out=np.zeros_like(x), where=wet),
     )
 
 
@@ -136,23 +130,21 @@ def contact_friction(
     slip_y: ArrayLike = 0.0,
     asperity_friction: float = 0.1,
     asperity_share: float | None = None,
-    film: Film = 'local',
     slip_floor: float = 0.0,
 ) -> ContactFriction:
     """
     Integrate the friction of a contact with a slip field.
 
     Slip [m/s] of the surface along x and y, numbers or arrays on the grid; boundary coefficient
-    and share [-] as in `node_strengths`; `film` shears the local or the central film; |slip| is
-    sqrt(slip^2 + `slip_floor`^2) [m/s] where a direction is needed. Raises InputError for slip
-    that does not fit the grid.
+    and share [-] as in `node_strengths`; |slip| is sqrt(slip^2 + `slip_floor`^2) [m/s] where a
+    direction is needed. Raises InputError for slip that does not fit the grid.
 
     """
     vx, vy = _on_grid(solution, slip_x, 'slip_x'), _on_grid(solution, slip_y, 'slip_y')
     if not 0 <= slip_floor < np.inf:
         raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is 0 or more')
     nodes = node_strengths(
-        solution, asperity_friction=asperity_friction, asperity_share=asperity_share, film=film
+        solution, asperity_friction=asperity_friction, asperity_share=asperity_share
     )
     speed = np.sqrt(vx**2 + vy**2 + slip_floor**2)
     sheared = nodes.sheared(speed)
@@ -173,11 +165,7 @@ def contact_friction(
 
 
 def slide_roll_friction(
-    solution: ContactSolution,
-    slide_roll_ratio: float,
-    *,
-    asperity_friction: float = 0.1,
-    film: Film = 'local',
+    solution: ContactSolution, slide_roll_ratio: float, *, asperity_friction: float = 0.1
 ) -> ContactFriction:
     """
     Integrate the friction under uniform sliding along x.
@@ -187,7 +175,7 @@ def slide_roll_friction(
 
     """
     slip = slide_roll_ratio * solution.condition.entrainment_speed
-    return contact_friction(solution, slip_x=slip, asperity_friction=asperity_friction, film=film)
+    return contact_friction(solution, slip_x=slip, asperity_friction=asperity_friction)
 
 
 def _on_grid(solution: ContactSolution, slip: ArrayLike, name: str) -> Array:

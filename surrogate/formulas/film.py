@@ -146,17 +146,6 @@ def film_ratio(film: ArrayLike, rms: float) -> Array:
     return np.asarray(film / rms if rms else np.where(film > 0, np.inf, film))
 
 
-def asperity_share_aihara_1987(film_ratio: ArrayLike) -> Array:
-    """
-    Return the share of the load that asperities carry [-] at film ratio Lambda [-].
-
-    exp(-1.8 Lambda^1.2), a fit to Patir-Cheng: Aihara, J. Tribol. 109 (1987) 471. It overstates
-    contact against deterministic solutions.
-
-    """
-    return np.asarray(np.exp(-1.8 * np.asarray(film_ratio) ** 1.2))
-
-
 def rolling_force_biboulet_houpert_2010(contact: Contact, g: Groups) -> Array:
     """
     Return the hydrodynamic rolling force on each surface [N].

@@ -43,16 +43,6 @@ def ball_of(roughness: RoughnessSpectrum, ball: BallRoughness | None) -> ScaledS
     return ball_waves(ball.height, roughness)
 
 
-def draw_stated(
-    roughness: Roughness, ball: BallRoughness | None, seed: int
-) -> FractalSurface | None:
-    """Return one draw of raceway and ball as stated, None where both are smooth."""
-    raceway, rolling = scale_spectrum(roughness), ball_of(roughness, ball)
-    if not roughness.rms and rolling is None:
-        return None
-    return draw_raceway(raceway, seed) if rolling is None else draw_pair(raceway, rolling, seed)
-
-
 def roughness_sentence(roughness: Roughness, ball: BallRoughness | None) -> str:
     """Say what the stated roughness stands for, and what of it is assumed."""
     raceway, rolling = scale_spectrum(roughness), ball_of(roughness, ball)

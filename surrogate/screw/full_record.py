@@ -11,7 +11,7 @@ import numpy as np
 from surrogate.asperities.law import FILM_BANDS
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
-from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
+from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
 from surrogate.screw.record import point_record
@@ -22,8 +22,6 @@ LOAD_CHANGE = 0.01
 """Change of a normal force by friction and inertia that is warned about [-]."""
 FILM_ERROR = 0.1
 """Estimated error of a central film that is warned about [-]."""
-FEWEST_NODES = 4.0
-"""Nodes per shortest wave below which a rough contact is warned about [-]."""
 KEYS = {
     'converged': 'whether the numbers are valid',
     'energy_error': 'difference of both derivations of the torque, over the friction torque',
@@ -87,7 +85,7 @@ def solution_record(
         reasons=[_reason(solution, contact) for contact in solution.contacts],
         sliding=sliding,
         angles=(screw_side.contact_angle, nut_side.contact_angle),
-        warnings=[*_warnings(screw, solution, shortest_on_grid(screw, settings))],
+        warnings=[*_warnings(screw, solution)],
         inlet_heating=heated,
     )
     return record | {
@@ -104,19 +102,12 @@ def _reason(solution: ScrewSolution, contact: ScrewContact) -> str:
     return '' if solution.converged else solution.status
 
 
-def _warnings(screw: Screw, solution: ScrewSolution, wave: float) -> Iterator[str]:
-    """Yield what is doubtful of a solution; `wave`, the shortest one that was solved [m]."""
+def _warnings(screw: Screw, solution: ScrewSolution) -> Iterator[str]:
+    """Yield what is doubtful of a solution."""
     if solution.load_change > LOAD_CHANGE:
         yield (
             'balls: friction and inertia change a normal force by '
             f'{100 * solution.load_change:.2g} %, the contacts were solved before that'
-        )
-    grids = (contact.pressed.y for contact in solution.loaded_contacts)
-    nodes = min((wave / float(y[1] - y[0]) for y in grids), default=math.inf)
-    if nodes < FEWEST_NODES:
-        yield (
-            f'roughness: {nodes:.2g} nodes per shortest wave across the track, asperity contact '
-            f'is resolved from {FEWEST_NODES:g}'
         )
     for contact in solution.contacts:
         approach, clearance = contact.opposite_flank_approach, screw.flank_clearance
@@ -136,12 +127,8 @@ def _warnings(screw: Screw, solution: ScrewSolution, wave: float) -> Iterator[st
 
 def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     """Say where the asperity contact of a point is from."""
-    if settings.kinematics != 'rolling':
-        return {'standing': 'roughness that stands still', 'smooth': 'no roughness'}[
-            settings.kinematics
-        ]
     sheet = screw.roughness
-    if not screw.composite_rms:
+    if settings.kinematics == 'smooth' or not screw.composite_rms:
         return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
     band = (

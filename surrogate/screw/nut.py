@@ -156,11 +156,8 @@ def balanced_nut(
 def contact_failure(name: NutName, solved: Sequence[SolvedContact | None]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
     for side, contact in zip(SIDES, solved, strict=True):
-        if contact is None:
-            continue
-        for kind, solution in (('smooth', contact.smooth), ('rough', contact.pressed)):
-            if not solution.converged:
-                return f'{name} nut, {side}, {kind} contact: {solution.status.value}'
+        if contact is not None and not contact.converged:
+            return f'{name} nut, {side}, smooth contact: {contact.smooth.status.value}'
     return ''
 
 

@@ -91,14 +91,14 @@ def solve_screw(
     Solve the full model of a screw, opened by `Contacts.of`, at one operating point.
 
     A `start` from a neighbouring point of the same screw saves time and changes nothing beyond the
-    tolerances of the contacts; rough ones of another load start from cold all the same. Speed zero
-    is the limit of slow motion in the positive direction: all load on asperities. A contact or a
-    ball that did not converge leaves its sentence in the status and NaN elsewhere.
+    tolerances of the contacts. Speed zero is the limit of slow motion in the positive direction:
+    all load on asperities. A contact or a ball that did not converge leaves its sentence in the
+    status and NaN elsewhere.
 
     """
     settings, screw = settings or ScrewSettings(), opened.sheet
     nuts = _nut_loads(screw, point)
-    near = [(contact.smooth, contact.pressed) for contact in start.contacts] if start else []
+    near = [contact.smooth for contact in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
         contacts = make_contacts(opened, lubricant, point, settings)

@@ -17,12 +17,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import canonical_json
-from surrogate.formulas.geometry import helix_angle
-from surrogate.formulas.load_sharing import nut_forces
-from surrogate.formulas.torque import efficiency, torque_constant_friction
+from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.record import CONSTANT_FRICTION
-from surrogate.studies.tasks import OURS, PRELOAD, RELIEVED, ROUGH_SPEEDS, SMOOTH, StudyTask
+from surrogate.studies.tasks import LOADED, PRELOAD, ROUGH_SPEEDS, SMOOTH, StudyTask
 
 Array = NDArray[np.float64]
 Along = Literal['rpm', 'load']
@@ -37,35 +34,27 @@ class StudyRow(StudyTask):
     """
     One solved task; numbers that its kind does not have, or that did not converge, are NaN.
 
-    Contact or worst contact: normal force [N], entrainment speed [m/s], films at the centre, over
-    the inner half of the ellipse and the least [m], largest pressure [Pa], RCS and asperity share
-    [-], mean distance of the asperity load from the centre over the semi-axes [-].
-    Screw: standard deviation of RCS by that of the law, RCS of loaded and relieved nut [-],
-    friction torque and its sliding and rolling part, the sliding part with the central film in
-    Eyring's law, the torque of friction along the track [N m], friction coefficient and its parts
-    from film and asperities [-]. Processor time [s].
+    Contact or worst contact: normal force [N], films at the centre and over the inner half of the
+    ellipse [m], RCS and asperity share [-], mean distance of the asperity load from the centre
+    over the semi-axes [-]. Screw: RCS of loaded and relieved nut [-], friction torque and its
+    sliding and rolling part [N m], friction coefficient and its parts from film and asperities
+    [-]. Processor time [s].
 
     """
 
     inputs: str
     status: str = ''
     normal_force: float = math.nan
-    entrainment_speed: float = math.nan
     central_film: float = math.nan
     mean_film: float = math.nan
-    minimum_film: float = math.nan
-    max_pressure: float = math.nan
     rcs: float = math.nan
     asperity_share: float = math.nan
     asperity_distance: float = math.nan
-    rcs_deviation: float = math.nan
     rcs_loaded: float = math.nan
     rcs_relieved: float = math.nan
     friction_torque: float = math.nan
     sliding_torque: float = math.nan
     rolling_torque: float = math.nan
-    central_film_torque: float = math.nan
-    track_torque: float = math.nan
     friction_coefficient: float = math.nan
     film_coefficient: float = math.nan
     asperity_coefficient: float = math.nan
@@ -104,13 +93,13 @@ class Curve:
 
 def pick(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
     """
-    Return the converged rows whose columns have the wanted values, of our own case by default.
+    Return the converged rows whose columns have the wanted values, of the loaded nut by default.
 
     `rough` asks for any draw of the roughness, or for none.
 
     """
     rough = wanted.pop('rough', None)
-    wanted = {'case': OURS} | wanted
+    wanted = {'nut': LOADED} | wanted
     return [
         row
         for row in rows
@@ -141,15 +130,9 @@ def _deviation(values: list[float]) -> float:
     return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan
 
 
-def mean_of(rows: Iterable[StudyRow], name: str, **wanted: Any) -> float:
-    """Return the mean of a column over the wanted rows, in its unit; NaN without one."""
-    values = [getattr(row, name) for row in pick(rows, **wanted)]
-    return float(np.mean(values)) if values else math.nan
-
-
-def screw_speeds(rows: Iterable[StudyRow], name: str, case: str = OURS) -> Curve:
+def screw_speeds(rows: Iterable[StudyRow], name: str) -> Curve:
     """Return a column of the screw under preload over speed."""
-    return curve(rows, 'rpm', name, kind='screw', load=PRELOAD, case=case)
+    return curve(rows, 'rpm', name, kind='screw', load=PRELOAD)
 
 
 def contact_speeds(rows: Iterable[StudyRow]) -> Curve:
@@ -159,43 +142,31 @@ def contact_speeds(rows: Iterable[StudyRow]) -> Curve:
 
 
 def nut_rows(rows: Iterable[StudyRow], nut: str) -> list[StudyRow]:
-    """Return contacts of a nut, those under preload for either, as a case of its own."""
-    case = OURS if nut == 'loaded' else RELIEVED
+    """Return contacts of a nut, those under preload for either, as if of the loaded one."""
     return [
-        replace(row, case=OURS)
+        replace(row, nut=LOADED)
         for row in rows
-        if row.kind == 'contact'
-        and (row.case == case or (row.case == OURS and row.load == PRELOAD))
+        if row.kind == 'contact' and (row.nut == nut or row.load == PRELOAD)
     ]
 
 
-def apparent_friction(rows: Iterable[StudyRow], case: str = OURS) -> Curve:
+def apparent_friction(rows: Iterable[StudyRow]) -> Curve:
     """Return the friction coefficient that would make all losses by sliding, over speed."""
     friction, torque, sliding = (
-        screw_speeds(rows, name, case)
+        screw_speeds(rows, name)
         for name in ('friction_coefficient', 'friction_torque', 'sliding_torque')
     )
     return replace(friction, mean=friction.mean * torque.mean / sliding.mean)
 
 
-def paired_change(
-    rows: Iterable[StudyRow], name: str, along: Along, first: float, last: float, **wanted: Any
-) -> tuple[float, float, int]:
-    """
-    Return by how much a column differs between two places, in the same draws.
-
-    Mean and standard error of the difference, in the unit of the column, and the draws.
-
-    """
-    rows = list(rows)
+def paired_error(rows: Iterable[StudyRow], name: str, load: float, **wanted: Any) -> float:
+    """Return the standard error of the change of a column from preload to a `load` [N] by draw."""
     before, after = (
-        {row.draw: getattr(row, name) for row in pick(rows, **{along: place}, **wanted)}
-        for place in (first, last)
+        {row.draw: getattr(row, name) for row in pick(rows, load=place, **wanted)}
+        for place in (PRELOAD, load)
     )
-    changes = [after[draw] - before[draw] for draw in sorted(before.keys() & after.keys())]
-    if not changes:
-        return math.nan, math.nan, 0
-    return float(np.mean(changes)), _deviation(changes) / math.sqrt(len(changes)), len(changes)
+    changes = [after[draw] - before[draw] for draw in before.keys() & after.keys()]
+    return _deviation(changes) / math.sqrt(max(len(changes), 1))
 
 
 def crossing(falling: Curve, limit: float) -> float:
@@ -214,23 +185,14 @@ def crossing(falling: Curve, limit: float) -> float:
     return float(falling.at[i] * (falling.at[i + 1] / falling.at[i]) ** part)
 
 
-def efficiencies(screw: Screw, rows: Iterable[StudyRow], column: str = 'friction_torque') -> Array:
-    """Return the efficiency [-] of rows with an opposing load, of the torque in a column."""
-    return np.array([efficiency(getattr(row, column), row.load, screw.lead) for row in rows])
-
-
-def constant_friction_efficiency(screw: Screw, load: float) -> float:
-    """Return the efficiency [-] at an opposing `load` [N] with one constant coefficient."""
-    loaded, relieved = (float(force) for force in nut_forces(load, screw.preload))
-    driving = torque_constant_friction(
-        loaded, relieved, screw.pitch_radius, helix_angle(screw), CONSTANT_FRICTION
-    )
-    return load * screw.lead / (2 * math.pi * driving)
+def efficiencies(screw: Screw, rows: Iterable[StudyRow]) -> Array:
+    """Return the efficiency [-] of rows with an opposing load."""
+    return np.array([efficiency(row.friction_torque, row.load, screw.lead) for row in rows])
 
 
 def mapped(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
-    """Return the rows of the screw under load, by load and speed, in the full tier by default."""
-    loaded = [row for row in pick(rows, **({'kind': 'screw'} | wanted)) if row.load > 0]
+    """Return the rows of the screw under load, by load and speed."""
+    loaded = [row for row in pick(rows, kind='screw', **wanted) if row.load > 0]
     return sorted(loaded, key=lambda row: (row.load, row.rpm))
 
 

@@ -119,6 +119,6 @@ def test_pictures_are_written_or_refused_in_a_sentence(run, small, tmp_path, ref
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(small, '--plot', folder) == 0
-    expected = ['contact_3d.png', 'contact_maps.png', 'contact_profiles.png']
+    expected = ['contact_maps.png', 'contact_profiles.png']
     assert sorted(path.name for path in folder.iterdir()) == expected
     refused('plot_small_cannot', run, small, '--plot', small)

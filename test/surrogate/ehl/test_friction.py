@@ -61,28 +61,18 @@ def test_small_slip_is_newtonian_and_below_the_floor_proportional(solved):
     assert double.force_x == pytest.approx(2 * small.force_x, rel=1e-3)
 
 
-def test_central_film_changes_the_film_only(solved):
-    """The option shears the central film everywhere; the rim then shears less."""
-    local = slide_roll_friction(solved, 0.02)
-    central = slide_roll_friction(solved, 0.02, film='central')
-    assert central.coefficient == pytest.approx(local.coefficient, rel=0.05)
-    assert central.coefficient != local.coefficient
-
-
-@pytest.mark.parametrize('film', ['local', 'central'])
-def test_traction_is_that_of_each_node_by_the_laws(solved, film):
+def test_traction_is_that_of_each_node_by_the_laws(solved):
     """The plain version: Eyring's stress of the oil, or mu p where the film is at the floor."""
     thin = solved.film.copy()
     thin[100:140, 20:40] = solved.settings.film_floor
     mixed, slip = replace(solved, film=thin), 0.01 + 20.0 * solved.y
     found = contact_friction(
-        mixed, slip_x=np.broadcast_to(slip, thin.shape), asperity_friction=0.12, film=film
+        mixed, slip_x=np.broadcast_to(slip, thin.shape), asperity_friction=0.12
     )
     dry = punctured_nodes(mixed)
-    thickness = thin if film == 'local' else np.full_like(thin, solved.central_film)
     viscosity = viscosity_of(solved.lubricant, solved.film_pressure)
     sheared = shear_stress_eyring_1936(
-        viscosity, np.abs(slip) / thickness, solved.lubricant.eyring_stress
+        viscosity, np.abs(slip) / thin, solved.lubricant.eyring_stress
     )
     sheared[dry | (solved.film_pressure == 0)] = 0.0
     boundary = np.where(dry, 0.12 * mixed.pressure, 0.0)
@@ -138,7 +128,6 @@ def test_dry_contact_has_the_boundary_coefficient(nominal, raceway):
         {'slip_x': np.zeros(3)},
         {'slip_x': np.nan},
         {'slip_x': 0.0, 'asperity_friction': -0.1},
-        {'slip_x': 0.0, 'film': 'none'},
         {'slip_x': 0.0, 'slip_floor': -1.0},
     ],
 )

@@ -129,11 +129,6 @@ def test_rolling_force_has_its_isoviscous_limit(load, factor):
     assert gain == pytest.approx(factor ** (2 / 3), rel=1e-3)
 
 
-@pytest.mark.parametrize(('ratio', 'share'), [(0.1, 0.89), (0.5, 0.46), (1, 0.17), (2, 0.016)])
-def test_asperity_share_printed_values(ratio, share):
-    assert laws.asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
-
-
 def test_ranges_name_formulas_and_groups_and_leaving_one_is_told():
     import surrogate.formulas.film as module
 

@@ -5,19 +5,16 @@
 from dataclasses import replace
 import math
 
-import numpy as np
 import pytest
 from surrogate.parameters import load_screw
-from surrogate.raceway.ball import ball_of, draw_pair, draw_stated, roughness_sentence
-from surrogate.raceway.scaling import draw_raceway, scale_spectrum
-from surrogate.raceway.short_waves import wave_rms
+from surrogate.raceway.ball import ball_of, roughness_sentence
+from surrogate.raceway.scaling import scale_spectrum
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.raceway.stated import BallRoughness, Roughness
 
 STATED = load_screw('nominal').roughness
 SMOOTH = Roughness(rms=0.0, asperity_friction=0.1)
 BALL = BallRoughness(grade='G10')
-X, Y = np.linspace(-1e-4, 1e-4, 20), np.linspace(-4e-4, 4e-4, 15)
 
 
 def test_every_number_of_a_sheet_reaches_the_spectrum():
@@ -110,23 +107,9 @@ def test_what_nobody_stated_is_said(says):
     assert roughness_sentence(SMOOTH, BallRoughness(rms=0.0)) == 'raceway: smooth; ball: smooth'
 
 
-def test_a_draw_is_that_of_raceway_and_ball():
-    """Phases of their own; none of either where both are smooth."""
-    raceway, ball = scale_spectrum(STATED), ball_of(STATED, BALL)
-    for stated, expected in (
-        (None, draw_raceway(raceway, 5)),
-        (BALL, draw_pair(raceway, ball, 5)),
-    ):
-        found = draw_stated(STATED, stated, 5)
-        np.testing.assert_array_equal(found.heights(X, Y), expected.heights(X, Y))
-    assert ball_of(STATED, BallRoughness(rms=0.0)) is None
-    assert draw_stated(SMOOTH, None, 5) is draw_stated(SMOOTH, BallRoughness(rms=0.0), 5) is None
-    alone = draw_stated(replace(SMOOTH, fractal_dimension=2.68), BALL, 5)
-    assert wave_rms(alone) == pytest.approx(wave_rms(draw_raceway(ball, 5)))
-
-
 def test_the_ball_shares_dimension_and_generator_of_the_raceway():
-    """Its long cut-off is that of the table, by which balls are measured."""
+    """Its long cut-off is that of the table, by which balls are measured; none where smooth."""
+    assert ball_of(STATED, BallRoughness(rms=0.0)) is None
     ball = ball_of(replace(STATED, ridges=4, scale_ratio=1.3), BALL)
     assert ball.fractal_dimension == 2.68
     assert ball.direction.size == 4

@@ -31,12 +31,6 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 OPENED = Contacts.of(SCREW)
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
 SETTINGS = ScrewSettings(smooth=SMALL)
-STANDING = ScrewSettings(
-    kinematics='standing',
-    smooth=SMALL,
-    rough=Settings(nx=65, ny=129, error_estimate=False),
-    nodes_per_wave=3.0,
-)
 
 
 def record_at(screw, oil, point, settings):
@@ -51,13 +45,13 @@ def record(rpm, load, settings=SETTINGS):
 
 
 def test_warnings_begin_beyond_their_limits():
-    """A change of 1 %, a film known to 10 %, 4 nodes a wave, and the clearance are none yet."""
+    """A change of 1 %, a film known to 10 % and the clearance are none yet."""
 
-    def warnings(screw=SCREW, *, change=0.0, error=0.0, approach=0.0, grids=(), wave=0.0):
+    def warnings(screw=SCREW, *, change=0.0, error=0.0, approach=0.0):
         ball = {'nut': 'loaded', 'side': 'screw', 'film_error': error}
         contact = SimpleNamespace(**ball, opposite_flank_approach=approach)
-        found = {'load_change': change, 'loaded_contacts': grids, 'contacts': [contact]}
-        return [*_warnings(screw, SimpleNamespace(**found), wave)]
+        found = SimpleNamespace(load_change=change, contacts=[contact])
+        return [*_warnings(screw, found)]
 
     for change, told in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
         assert len(warnings(change=change)) == told
@@ -66,10 +60,6 @@ def test_warnings_begin_beyond_their_limits():
     for approach, told in ((1e-6, 0), (1.1e-6, 1), (math.nan, 0)):
         assert len(warnings(replace(SCREW, flank_clearance=1e-6), approach=approach)) == told
         assert not warnings(replace(SCREW, flank_clearance=None), approach=approach)
-    grids = [SimpleNamespace(pressed=SimpleNamespace(y=[1.0, 1.25, 9.0]))] * 2
-    assert warnings(grids=grids, wave=1.0) == warnings(grids=(), wave=0.0) == []
-    (coarse,) = warnings(grids=grids, wave=0.75)
-    assert coarse.startswith('roughness: 3 nodes per shortest wave')
 
 
 def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():
@@ -117,11 +107,10 @@ def test_friction_coefficient_lies_between_film_and_boundary():
     assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
 
 
-@pytest.mark.parametrize('settings', [SETTINGS, STANDING], ids=['rolling', 'standing'])
-def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
+def test_friction_is_integrated_with_the_slip_of_the_balance():
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     # Contacts under the very forces of the balance.
-    agreed = replace(settings, coupling_tolerance=1e-4)
+    agreed = replace(SETTINGS, coupling_tolerance=1e-4)
     for contact in solve_screw(OPENED, OIL, point, settings=agreed).contacts:
         slip_x, slip_y = contact_slip(SCREW, contact.pressed, contact.side, contact.motion)
         found = contact_friction(
@@ -195,22 +184,19 @@ def test_the_record_says_where_contact_is_from():
     )
     assert 'rolls, run in, summits cut at 3 GPa; film' in run_in
     assert law_sentence(with_raceway(SCREW, rms=0.0), SETTINGS) == 'no roughness'
-    assert law_sentence(SCREW, STANDING) == 'roughness that stands still'
     assert law_sentence(SCREW, replace(SETTINGS, kinematics='smooth')) == 'no roughness'
     _, rolling = record(60, 800.0)
     assert rolling['asperity_law'] == law_sentence(SCREW, SETTINGS)
     assert rolling['rcs_deviation'] > 0
-    point, standing = record(60, 800.0, STANDING)
-    assert math.isnan(standing['rcs_deviation'])
+    point, smooth = record(60, 800.0, replace(SETTINGS, kinematics='smooth'))
+    assert math.isnan(smooth['rcs_deviation'])
     formulas = closed_form_record(SCREW, OIL, point)
     for name in ('asperity_law', 'rcs_deviation'):
         assert name not in formulas
 
 
-def test_coarse_waves_and_moved_forces_are_warned_about():
-    """A grid of three nodes per wave, and a nut near unloading at high speed."""
-    _, found = record(60, 800.0, STANDING)
-    assert any('nodes per shortest wave' in text for text in found['warnings'])
+def test_moved_forces_are_warned_about():
+    """A nut near unloading at high speed."""
     once = ScrewSettings(smooth=SMALL, kinematics='smooth', coupling_tolerance=math.inf)
     _, found = record(3000, 2600.0, once)
     assert found['load_change'] > 0.02

@@ -12,7 +12,7 @@ from surrogate.parameters import load_lubricant, load_screw
 from surrogate.studies import curves
 from surrogate.studies.curves import inputs_hash, StudyRow
 from surrogate.studies.solve import known_inputs, run_study
-from surrogate.studies.tasks import FIGURES, SHORT, SMOOTH, STANDING, StudyTask, tasks
+from surrogate.studies.tasks import FIGURES, RELIEVED, SMOOTH, StudyTask, tasks
 from surrogate.tasks.table import read_table, write_table
 from surrogate.tasks.workers import open_pool
 
@@ -21,32 +21,32 @@ BASE = StudyRow(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='C
 
 
 def test_every_task_is_asked_once_and_more_draws_are_more_rough_contacts(refused):
-    """Figures share their solves; the whole screw rolls without draws, but for one."""
+    """Figures share their solves; the whole screw has no draws."""
     wanted = tasks(FIGURES, 6)
     assert len({task.key for task in wanted}) == len(wanted)
-    first = next(task for task in wanted if (task.rpm, task.load, task.draw) == (5.0, 0.0, 0))
-    assert first.fields == 'map'
-    assert len(tasks(('7',), 1)) == 4
+    assert len(tasks(('6b',), 1)) == 12
     few, many = (tasks(('trends',), draws) for draws in (2, 6))
     more = {task.key for task in many} - {task.key for task in few}
     assert len(more) == len(many) - len(few) > 4
     assert {task.kind for task in many if task.key in more} == {'contact'}
-    assert {task.draw for task in many if task.kind == 'screw' and task.rolls} == {SMOOTH}
-    assert {task.draw for task in many if task.kind == 'screw' and not task.rolls} == {0}
+    assert {task.draw for task in many if task.kind == 'screw'} == {SMOOTH}
     refused('figure_5', tasks, ('5',), 6)
-    refused('draws_0', tasks, ('7',), 0)
+    refused('draws_0', tasks, ('6b',), 0)
 
 
 def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, refused):
-    """NaN, negative draws and names with blanks included."""
-    rows, path = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0)], tmp_path / 'paper.csv'
+    """With NaN and negative draws."""
+    rows, path = (
+        [BASE, replace(BASE, draw=SMOOTH, nut=RELIEVED, load=500.0)],
+        tmp_path / 'paper.csv',
+    )
     write_table(path, StudyRow, rows, digits=6)
     first, second = read_table(path, StudyRow)
     assert (first.key, second.key) == (BASE.key, rows[1].key)
     assert (first.rcs, first.draw, first.status) == (0.1, 0, 'CONVERGED')
     assert math.isnan(first.friction_torque)
     task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
-    assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'
+    assert task.key == BASE.key == 'contact_loaded_5rpm_0N_draw0'
     path.write_text('inputs,kind,rpm\na,contact,fast\n')
     refused('paper_cannot_read', read_table, path, StudyRow)
 
@@ -54,7 +54,7 @@ def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, ref
 def test_another_screw_is_another_study():
     """The hash covers both datasheets, and the version of the law where it is given."""
     assert len({inputs_hash(SCREW, OIL, law) for law in ('', VERSION, 'another')}) == 3
-    known = {True: inputs_hash(SCREW, OIL, VERSION), False: inputs_hash(SCREW, OIL)}
+    known = {'screw': inputs_hash(SCREW, OIL, VERSION), 'contact': inputs_hash(SCREW, OIL)}
     assert known_inputs() == known
     changed = replace(OIL, viscosity=1.01 * OIL.viscosity)
     assert inputs_hash(SCREW, OIL) == inputs_hash(SCREW, OIL)
@@ -62,21 +62,20 @@ def test_another_screw_is_another_study():
 
 
 def test_a_study_goes_on_where_it_stopped(tmp_path):
-    """What is kept is not solved again, and has its fields."""
-    wanted = tasks(('7',), 1)
+    """What is kept is not solved again."""
+    wanted = tasks(('6b',), 1)
     told = []
     with open_pool(1) as pool:
         run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
         assert told == [(1, 2), (2, 2)]
         told.clear()
-        study = run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
+        rows = run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
         assert not told
-        assert list(study.rows) == [task.key for task in wanted[:2]]
-        assert np.shape(study.fields[wanted[0].key]['film']) == (257, 1)
+        assert list(rows) == [task.key for task in wanted[:2]]
         run_study(tmp_path, wanted[1:3], pool, lambda *now: told.append(now))
         assert len(told) == 1
-    rows = read_table(tmp_path / 'paper.csv', StudyRow)
-    assert [row.key for row in rows] == [task.key for task in wanted[1:3]]
+    table = read_table(tmp_path / 'paper.csv', StudyRow)
+    assert [row.key for row in table] == [task.key for task in wanted[1:3]]
 
 
 def test_mean_and_spread_over_draws():
@@ -92,8 +91,9 @@ def test_mean_and_spread_over_draws():
     np.testing.assert_allclose(found.error, [0.1, 0.01])
     assert found.draws == 2
     assert not curves.pick(rows, rough=False)
-    mean, error, draws = curves.paired_change(rows, 'rcs', 'rpm', 5.0, 20.0, kind='contact')
-    assert (mean, error, draws) == (pytest.approx(-0.19), pytest.approx(0.09), 2)
+    rows = [replace(row, load=9.0 * (row.rpm == 20.0), rpm=5.0) for row in rows]
+    error = curves.paired_error(rows, 'rcs', 9.0, kind='contact')
+    assert error == pytest.approx(0.09)  # changes of -0.1 and -0.28
 
 
 def line(at, mean):
@@ -115,18 +115,8 @@ def test_crossing_by_logarithms_and_the_map_is_a_grid():
         for rpm in (5.0, 10.0)
     ]
     rows[1] = replace(rows[1], status='nut: stalled')
-    rows.append(replace(rows[3], case=STANDING, rcs=1200.0))
+    rows.append(replace(rows[3], nut=RELIEVED, rcs=1200.0))
     speeds, loads, values = curves.grid(rows, 'rcs')
     np.testing.assert_array_equal(speeds, [5.0, 10.0])
     np.testing.assert_array_equal(loads, [50.0, 100.0])
     np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1000.0]])
-
-
-def test_constant_friction_is_that_of_the_table(table):
-    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
-    row = table('constant_friction.csv')[0]
-    screw = replace(SCREW, preload=1000.0)
-    for load in (0.5, 1.0, 2.0):
-        expected = float(row[f'eta_at_{load:g}_preload'])
-        found = curves.constant_friction_efficiency(screw, 1000.0 * load)
-        assert found == pytest.approx(expected, abs=1e-3)
