@@ -28,6 +28,7 @@ def test_outputs_are_those_on_file(case, tmp_path):
     assert not said, text
 
 
+@pytest.mark.long
 def test_turns_that_are_judged_compiled_say_the_same(tmp_path, monkeypatch):
     monkeypatch.setattr(CompiledTurns, 'are_due', True)
     recorded = compare.recorded_outputs('live')

@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.tables.estimates import is_universal
 from ballscrew_monitor.recordings.tables.heads import Head
 from ballscrew_monitor.recordings.tables.mapping import DATES, TableMap
 from ballscrew_monitor.recordings.tables.quantities import SCALES
-from ballscrew_monitor.recordings.tables.sources import source_of
+from ballscrew_monitor.recordings.tables.sources import Source
 import numpy as np
 from surrogate.files import InputError
 
@@ -43,19 +43,20 @@ TIME_OF_DAY = re.compile(r'(?<![\d:])(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<s
 TEXTS = ('.csv', '.txt', '.tsv', '.log', '.dat')
 
 
-def dated(path: Path, mapping: TableMap) -> TableMap:
+def dated(log: Source, mapping: TableMap) -> TableMap:
     """
-    Return a map whose epoch is the date of the log at `path`, if that is where the map says so.
+    Return a map whose epoch is the date of the log, if that is where the map says so.
 
     Raises InputError where no date stands there.
 
     """
     if not mapping.date_from:
         return mapping
+    path = log.path
     if mapping.date_from == MODIFIED:
         moment = datetime.datetime.fromtimestamp(int(path.stat().st_mtime), datetime.UTC)
     elif mapping.date_from == HEADER:
-        moment = _known(_by_head(path, mapping), path, 'the lines above its table state none')
+        moment = _known(_by_head(log, mapping), path, 'the lines above its table state none')
     else:
         name = _by_name(path, mapping)
         moment = _known(name, path, 'neither its name nor that of its folder holds one')
@@ -101,18 +102,18 @@ def start_in_head(head: Head) -> Start:
     return Start()
 
 
-def _by_head(path: Path, mapping: TableMap) -> datetime.datetime | None:
+def _by_head(log: Source, mapping: TableMap) -> datetime.datetime | None:
     """Return when a log begins by the start that its head states, else by a date in it."""
-    start = start_in_head(source_of(path, mapping.layout, mapping.sheet).head)
+    start = start_in_head(log.head)
     moment = start.moments.get(mapping.order, start.known)
     if moment is not None:
         return datetime.datetime.fromtimestamp(moment, datetime.UTC)
     if start.moments:
         raise InputError(
-            f'log {path}: the start in line {start.row} may be of either order of '
+            f'log {log.path}: the start in line {start.row} may be of either order of '
             'day and month: state time: {order: dmy} or mdy in the map'
         )
-    return date_in_head(_head(path))
+    return date_in_head(_head(log.path))
 
 
 def _by_name(path: Path, mapping: TableMap) -> datetime.datetime | None:

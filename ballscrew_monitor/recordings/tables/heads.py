@@ -250,8 +250,11 @@ def _kind(cell: str) -> str:
     """Return n for a number or time, - for nothing, and x for any other cell."""
     if not cell or cell.lower() in NO_NUMBER:
         return '-'
-    if any(letter.isdigit() for letter in cell) and (
-        NUMBER.fullmatch(plain_numeral(cell)) or TIME.fullmatch(cell) or is_amount(cell)
+    if any(map(str.isdigit, cell)) and (
+        NUMBER.fullmatch(cell)
+        or NUMBER.fullmatch(plain_numeral(cell))
+        or TIME.fullmatch(cell)
+        or is_amount(cell)
     ):
         return 'n'
     return 'x'

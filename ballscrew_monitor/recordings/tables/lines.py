@@ -28,11 +28,15 @@ class Line:
 
 
 def separators_of(lines: Sequence[Line]) -> tuple[str, ...]:
-    """Return the signs that may part the cells of lines."""
+    """Return the signs that may part the cells of lines, and the first that parts none."""
     if lines and lines[0].cells:
         return ('',)
     match = SEPARATED.match(lines[0].raw) if lines else None
-    return (match['sign'],) if match and match['sign'] in SEPARATORS else SEPARATORS
+    if match and match['sign'] in SEPARATORS:
+        return (match['sign'],)
+    text = '\n'.join(line.raw for line in lines)
+    idle = [sign for sign in SEPARATORS if sign != BLANKS and sign not in text]
+    return tuple(sign for sign in SEPARATORS if sign not in idle[1:])
 
 
 def cells_of_line(line: Line, separator: str) -> list[str]:

@@ -25,15 +25,16 @@ STEPS = (
 )
 """What is replaced: the quotes of a formula, an apostrophe, a D, a sign behind, brackets."""
 _PYTHON = [(re.compile(pattern), re.sub(r'\$\{(\d)\}', r'\\\1', by)) for pattern, by in STEPS]
-_OTHER = rf"^\s*[='(]|\d[dD][-+]?\d+\s*$|\d[.,]?\s*[-+\u2212\u2013]\s*$|[{WIDE[:10]}]"
+_OTHER = rf"^\s*[='(]|\d[.,]?[dD][-+]?\d+\s*$|\d[.,]?\s*[-+\u2212\u2013]\s*$|[{WIDE[:10]}]"
 """What texts hold that are not plain; most hold none."""
+_IS_OTHER = re.compile(_OTHER)
 _TRANSLATED = str.maketrans(WIDE, NARROW)
 
 
 def plain_numeral(text: str) -> str:
     """Return a text as a plain number if it is one in another way, else as it is."""
     plain = text.translate(_TRANSLATED)
-    for pattern, by in _PYTHON:
+    for pattern, by in _PYTHON if _IS_OTHER.search(plain) else ():
         plain = pattern.sub(by, plain)
     return plain
 

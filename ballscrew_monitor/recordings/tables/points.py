@@ -17,7 +17,8 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import RATED, UNITS
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.unit_names import unit_of, words_of
 from ballscrew_monitor.recordings.words import listed, short
 import numpy as np
@@ -52,7 +53,8 @@ def read_points(path: Path, asked: PointColumns) -> tuple[dict[str, Array], tupl
     that is needed, or with two of a quantity.
 
     """
-    names = column_names(path)
+    source = source_of(path)
+    names = source.names()
     measured = 'torque' if asked.torque_constant is None else 'current'
     columns = {
         'speed': asked.speed_column or _column_of(path, names, 'speed', '--speed-column'),
@@ -63,7 +65,7 @@ def read_points(path: Path, asked: PointColumns) -> tuple[dict[str, Array], tupl
     }
     chosen = {quantity: name for quantity, name in columns.items() if name}
     kinds = {'torque': measured, 'torque_std': 'torque'}
-    table = open_table(path, list(dict.fromkeys(chosen.values())))
+    table = open_table(source, list(dict.fromkeys(chosen.values())))
     scalings = {
         quantity: _scaling(path, name, kinds.get(quantity, quantity), asked)
         for quantity, name in chosen.items()

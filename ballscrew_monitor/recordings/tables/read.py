@@ -133,11 +133,10 @@ def column_names(path: Path, layout: Layout | None = None) -> list[str]:
 
 
 def open_table(
-    path: Path,
+    log: Path | Source,
     names: Collection[str],
     *,
     layout: Layout | None = None,
-    sheet: str = '',
     decimal: str = '',
     order: str = '',
     optional: Collection[str] = (),
@@ -151,7 +150,7 @@ def open_table(
     unless the `decimal` sign is stated; an `optional` one without a number is left out.
 
     """
-    source = source_of(path, layout, sheet)
+    source = log if isinstance(log, Source) else source_of(log, layout)
     of_marks = [one.column for each in (marks or {}).values() for one in each.held]
     _check_names(source, [*names, *of_marks], layout)
     source = source.marked(marks or {})

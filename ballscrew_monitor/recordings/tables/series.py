@@ -15,6 +15,7 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.amounts import fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
@@ -175,13 +176,13 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    mapping = dated(path, mapping)
+    source = sources.source_of(path, mapping.layout, mapping.sheet)
+    mapping = dated(source, mapping)
     columns = mapping.columns
     table = open_table(
-        path,
+        source,
         columns,
         layout=mapping.layout,
-        sheet=mapping.sheet,
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,

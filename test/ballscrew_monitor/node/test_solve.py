@@ -246,11 +246,11 @@ def test_a_killed_worker_ends_its_goal_alone_and_no_message_is_missed(node, says
     def until(condition):
         return node.until(lambda: samples.go_on() or condition())
 
-    for turn in range(4):
+    for at_work in (True, False):
         goal = solves.ask(**LONG)
         assert goal.accepted
         # At its first steps, or as soon as it is there.
-        until(functools.partial(goal.at, SOLVING) if turn % 3 == 0 else node.solvers)
+        until(functools.partial(goal.at, SOLVING) if at_work else node.solvers)
         (worker,) = node.solvers()
         os.kill(worker, signal.SIGKILL)
         status, result = until(goal.poll)
