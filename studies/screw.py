@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The nominal screw in the full tier over speed: its torque and RCS as roughness rolls, or stands.
+The nominal screw in the full tier over speed: its torque and RCS, rough and smooth.
 
 Usage: python studies/screw.py [--load N] [--out DIR]. ISO VG 68 at 40 degC. Prints the table of
 docs/theory/screw.md with the processor time of each point, and draws its picture.
@@ -15,7 +15,7 @@ import time
 
 import numpy as np
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint, Screw
-from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, PURPLE, VERMILION
+from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, PURPLE
 from surrogate.screw.contacts import Kinematics, ScrewSettings
 from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
@@ -29,11 +29,10 @@ LEAST = 1e-5
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A speed [rev/min], the three solutions there, and the time of the first [s]."""
+    """A speed [rev/min], both solutions there, and the time of the first [s]."""
 
     rpm: float
     rolling: ScrewSolution
-    standing: ScrewSolution
     smooth: ScrewSolution
     seconds: float
 
@@ -54,7 +53,7 @@ def solve_all(screw: Screw, load: float) -> list[Row]:
         began = time.process_time()
         found = solved(rpm, 'rolling')
         seconds = time.process_time() - began
-        rows.append(Row(rpm, found, solved(rpm, 'standing'), solved(rpm, 'smooth'), seconds))
+        rows.append(Row(rpm, found, solved(rpm, 'smooth'), seconds))
     return rows
 
 
@@ -70,17 +69,15 @@ def rolling_torque(screw: Screw, found: ScrewSolution) -> float:
 def table(screw: Screw, rows: list[Row]) -> str:
     """Return the table of the page."""
     lines = [
-        '| rev/min | torque [N m] | sliding | rolling | Lambda | RCS | smooth: torque '
-        '| standing: torque | RCS | s |',
-        '|---|---|---|---|---|---|---|---|---|---|',
+        '| rev/min | torque [N m] | sliding | rolling | Lambda | RCS | smooth: torque | s |',
+        '|---|---|---|---|---|---|---|---|',
     ]
     for row in rows:
         found, part = row.rolling, rolling_torque(screw, row.rolling)
         lines.append(
             f'| {row.rpm:g} | {found.friction_torque:.3f} | {found.friction_torque - part:.3f} '
             f'| {part:.3f} | {found.film_ratio:.2f} | {found.rcs:.2g} '
-            f'| {row.smooth.friction_torque:.3f} | {row.standing.friction_torque:.3f} '
-            f'| {row.standing.rcs:.2g} | {row.seconds:.1f} |'
+            f'| {row.smooth.friction_torque:.3f} | {row.seconds:.1f} |'
         )
     return '\n'.join(lines)
 
@@ -96,15 +93,11 @@ def picture(screw: Screw, rows: list[Row], load: float) -> object:
         ('friction torque', 'o-', 'black', [row.rolling.friction_torque for row in moving]),
         ('its rolling part', '^--', BLUE, parts),
         ('smooth raceways', ':', GREY, [row.smooth.friction_torque for row in moving]),
-        ('roughness stands', 's--', VERMILION, [row.standing.friction_torque for row in moving]),
     ):
         upper.plot(rpm, MILLI * np.array(torque), style, color=colour, label=label)
     upper.set(ylabel='torque [mN m]', title=f'Nominal screw, {load:g} N, ISO VG 68 at 40 °C')
-    for label, style, colour, rcs in (
-        ('roughness rolls', 'o-', 'black', [row.rolling.rcs for row in moving]),
-        ('roughness stands', 's--', VERMILION, [row.standing.rcs for row in moving]),
-    ):
-        lower.plot(rpm, np.maximum(rcs, LEAST), style, color=colour, label=label)
+    rcs = [row.rolling.rcs for row in moving]
+    lower.plot(rpm, np.maximum(rcs, LEAST), 'o-', color='black', label='RCS')
     lower.axhline(0.01, color=PURPLE, linestyle='--', label='limit 0.01')
     lower.set(
         xscale='log',
