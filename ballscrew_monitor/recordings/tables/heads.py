@@ -396,21 +396,21 @@ def _check_unit(name: str, below: str) -> None:
         )
 
 
-def _lacks_unit(name: str, unit: str) -> bool:
+def with_unit(name: str, unit: Any) -> str:
     """
-    Return True if a cell of a row of units is to stand behind a name.
+    Return a name with its unit in brackets, if that is a text and the name holds none.
 
     The brackets of the name must hold no unit; a letter there that names a unit of another
     quantity is taken for an axis. An unknown unit is kept, lest the usual one be assumed.
 
     """
-    kind = _kind_of(name)
+    kind, unit = _kind_of(name), unit if isinstance(unit, str) else ''
     held = any(
         is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
         for text in BRACKETS.findall(name)
     )
     unknown = (kind not in ('', 'time') or unit[:1].isdigit()) and any(map(str.isalpha, unit))
-    return not held and (is_unit(unit) or unknown)
+    return f'{name} [{unit}]' if not held and (is_unit(unit) or unknown) else name
 
 
 def _joined(name: str, below: str) -> str:
@@ -460,7 +460,7 @@ class _Above:
         for name, unit in zip(names, units, strict=False):
             _check_unit(name, unit)
         told = unlike(
-            f'{name} [{unit}]' if _lacks_unit(name, unit) else name or unnamed
+            with_unit(name, unit) or unnamed
             for name, unit, unnamed in zip(
                 names, units, (UNNAMED.format(at + 1) for at in range(self.width)), strict=True
             )

@@ -15,6 +15,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.recordings.tables.cells import Unreadable
+from ballscrew_monitor.recordings.tables.heads import with_unit
 from ballscrew_monitor.recordings.tables.layouts import period_of, property_of
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS
@@ -91,11 +92,6 @@ def _first(content: Mapping[str, Any], keys: Sequence[str]) -> Any:
     return next((content[key] for key in keys if key in content), None)
 
 
-def _with_unit(name: Any, unit: Any) -> str:
-    bare = not unit or not isinstance(unit, str) or BRACKETS.search(str(name))
-    return str(name) if bare else f'{name} [{unit}]'
-
-
 def _are(kind: type, values: Any) -> bool:
     return (
         isinstance(values, list) and bool(values) and all(isinstance(one, kind) for one in values)
@@ -111,7 +107,7 @@ def _named_rows(content: Content) -> Content:
         return None
     units = _first(content, UNIT)
     told = [*(units if _are(str, units) else []), *[''] * len(names)]
-    return _columns([_with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
+    return _columns([with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
 
 
 def _columns(names: Sequence[str], rows: list[Any], content: Mapping[str, Any]) -> Content:
@@ -168,7 +164,7 @@ def _channels(content: Content) -> Content:
         if isinstance(times, list):
             table['time' if 'time' not in table else f'{names[numbers[0]]} time'] = times
         for at in numbers:
-            table[_with_unit(names[at], _first(listed[at], UNIT))] = _first(listed[at], VALUES)
+            table[with_unit(names[at], _first(listed[at], UNIT))] = _first(listed[at], VALUES)
     return _beside(content) | table
 
 
@@ -231,7 +227,7 @@ def _flat(record: Mapping[str, Any], before: str = '') -> list[tuple[str, Any]]:
     for key, value in record.items():
         name = f'{before}{key}'
         if isinstance(value, dict) and 'value' in value:
-            found.append((_with_unit(name, _first(value, UNIT)), value['value']))
+            found.append((with_unit(name, _first(value, UNIT)), value['value']))
         elif isinstance(value, dict):
             found += _flat(value, f'{name}.')
         else:

@@ -258,7 +258,8 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
         return _sheet(path, layout, sheet)
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
-        frame, is_grouped, empty = signals.frame, kind in foreign.GROUPED, signals.empty_rows
+        frame, is_grouped = signals.frame, foreign.KINDS[kind].is_grouped
+        empty = signals.empty_rows
         _check_columns(path, frame.width)
         source = of_frame(path, frame.lazy(), signals.head(), frame.height, math.inf)
         lengths = [frame.height - column.null_count() for column in frame]
