@@ -21,6 +21,7 @@ from xml.etree import ElementTree
 from ballscrew_monitor.recordings.tables import arrays, line_messages, long_form, traces, waveforms
 from ballscrew_monitor.recordings.tables.apart import frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
+from ballscrew_monitor.recordings.tables.codings import text_of
 from ballscrew_monitor.recordings.tables.layouts import ADAPTER, format_of, FORMATS, RECORDER
 from ballscrew_monitor.recordings.tables.signals import Signals
 from polars.exceptions import PolarsError
@@ -125,7 +126,7 @@ def _of_its_kind(path: Path, kind: str) -> Iterator[None]:
 def _long(path: Path) -> Signals:
     frame, separator = long_form.read_long(path)
     with path.open('rb') as stream:
-        first = long_form.decoded(stream.read(limits.MEGA)).partition('\n')[0]
+        first = text_of(stream.read(limits.MEGA)).partition('\n')[0]
     return Signals(frame=frame, separator=separator, program=format_of(first))
 
 

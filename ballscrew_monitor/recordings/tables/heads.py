@@ -523,10 +523,19 @@ class _Above:
                     yield row
 
     def _below_names(self) -> list[list[str]]:
-        """Return the rows from the first with a known name on, or else with names of any kind."""
-        rows = [row for _, row in self.wide]
-        is_begin = _known if any(map(_known, rows)) else lambda row: not _is_of_numbers(row)
-        return [*itertools.dropwhile(lambda row: not is_begin(row), rows)]
+        """Return the rows from the first on that names most columns."""
+        named = [row for _, row in self._rows_of_names()]
+        rows, begin = [row for _, row in self.wide], max(named, key=_known, default=None)
+        return [*itertools.dropwhile(lambda row: row is not begin, rows)]
+
+    def _rows_of_names(self) -> list[tuple[Line, list[str]]]:
+        """Return the rows that may name the columns: those of numbers, or of units alone, none."""
+        rows = [
+            (line, row)
+            for line, row in self.wide
+            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
+        ]
+        return [one for one in rows if not _is_of_units(one[1])] or rows
 
     def _labelled_rows(self, first: Sequence[list[str]]) -> Iterator[list[str]]:
         """Yield rows of numbers behind a label that stand between the names and the rows."""
@@ -573,14 +582,9 @@ class _Above:
 
     def _row_of_names(self) -> list[str]:
         """Return the lowest row that names most columns: units and remarks may stand below it."""
-        rows = [
-            (line, row)
-            for line, row in self.wide
-            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
-        ]
+        rows = self._rows_of_names()
         if not rows:
             return []
-        rows = [one for one in rows if not _is_of_units(one[1])] or rows
         at = max(range(len(rows)), key=lambda at: (_known(rows[at][1]), at))
         line, row = rows[at]
         above = rows[at - 1][1] if at else []

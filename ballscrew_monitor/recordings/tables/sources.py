@@ -24,12 +24,9 @@ from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read,
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
 from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
-from ballscrew_monitor.recordings.tables.long_form import decoded
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
-from ballscrew_monitor.recordings.tables.names import KINDS
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
 from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
@@ -56,10 +53,6 @@ COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks'
 """Names of a last column whose cells a row need not have."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
-CODINGS = ('utf-8', 'cp1252', 'cp1250', 'latin-1')
-"""Codings of a text: the first is tried in each line, one of the next for all others, the last."""
-WORDS = frozenset[str]().union(*KINDS.values())
-"""Words of quantities."""
 AFTER_EMPTY = '"'
 """The last of the letters that may follow a sign before an empty cell: ends of lines, blanks."""
 TRIES = (
@@ -297,7 +290,7 @@ def is_log(path: Path) -> bool:
                 return bool(foreign.read_signals(path, kind).frame.width)
             return foreign.holds_numbers(head, kind, FEWEST)
         if codings.wide_coding(head):
-            head = decoded(head).encode()
+            head = codings.text_of(head).encode()
         text = _Text.of(path, head, head.rstrip(codings.NUL))
         return heads.holds_numbers(_first_lines(text)[0], FEWEST)
     return False
@@ -472,7 +465,7 @@ class _Text:
         """Give its lines, a letter for each byte."""
         with self.stream() as stream:
             stream.seek(self.begin())
-            text = io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end)
+            text = io.TextIOWrapper(stream, codings.BYTES, newline=self.line_end)
             yield _bounded(self.path, text)
 
 
@@ -630,8 +623,9 @@ def _first_lines(text: _Text) -> tuple[list[Line], list[int], str]:
             begins.append(begin)
             if len(lines) >= LINES or at > limits.MEGA:
                 break
-    coding = _coding(lines)
-    read = (_decoded(line, coding or CODINGS[0]) for line in lines)
+    written = [line.encode(codings.BYTES) for line in lines]
+    coding = codings.narrow_coding(b''.join(written))
+    read = (codings.line_of(line, coding) for line in written)
     return [Line(raw=raw, row=row) for raw, row in zip(read, rows)], [*begins, at], coding
 
 
@@ -661,35 +655,6 @@ def _parts(stream: BinaryIO, line_end: bytes) -> Iterator[bytes]:
 def _is_odd(block: bytes) -> bool:
     """Return True if a text has an odd number of quotes."""
     return b'"' in block and block.count(b'"') % 2 == 1
-
-
-def _decoded(line: str, coding: str) -> str:
-    """Return a line of which each letter is a byte, in UTF-8 or else a coding if it fits."""
-    for each in (CODINGS[0], coding):
-        with contextlib.suppress(UnicodeError):
-            return line.encode(CODINGS[-1]).decode(each)
-    return line
-
-
-def _coding(lines: Sequence[str]) -> str:
-    """
-    Return the coding of the lines that are not of UTF-8, empty if there are none.
-
-    Of those for the west and the middle of Europe it is that with more words of quantities.
-
-    """
-    others = ''
-    for line in lines:
-        try:
-            line.encode(CODINGS[-1]).decode()
-        except UnicodeError:
-            others += line
-    content = others.encode(CODINGS[-1])
-
-    def known(coding: str) -> int:
-        return len({*words_of(content.decode(coding, 'replace'))} & WORDS)
-
-    return max(CODINGS[1:-1], key=known) if others else ''
 
 
 def _check_columns(path: Path, count: int) -> None:
