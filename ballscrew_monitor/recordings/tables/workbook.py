@@ -136,17 +136,18 @@ def _texts(path: str, name: str) -> pl.DataFrame:
             drop_empty_rows=False,
             drop_empty_cols=False,
         )
-        return cells.select(_hours(pl.col(name).cast(pl.String)).alias(name) for name in cells.columns)
+        return cells.select([*map(_hours, cells.columns)])
 
 
-def _hours(cells: pl.Expr) -> pl.Expr:
-    """Return texts without the dates that a sheet adds to times; a day later is 24 hours more."""
+def _hours(name: str) -> pl.Expr:
+    """Return a column without the dates that a sheet adds to times: a day later is 24 h more."""
+    cells = pl.col(name).cast(pl.String)
     date, hours, rest = (cells.str.extract(OF_DAY, group + 1) for group in range(3))
     first, later = (pl.lit(day).str.to_date() for day in DAYS)
     day = date.str.to_date(strict=False)
     days = (day - pl.when(day < later).then(first).otherwise(later)).dt.total_days()
     of_day = (24 * days + hours.cast(pl.Int64)).cast(pl.String).str.zfill(2) + rest
-    return of_day.fill_null(cells)
+    return of_day.fill_null(cells).alias(name)
 
 
 def _check_size(path: Path) -> int:
