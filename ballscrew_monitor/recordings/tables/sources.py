@@ -51,6 +51,11 @@ SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
 COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
 """Names of a last column whose cells a row need not have."""
+TORN_TIME = r'(?<=\d:\d\d:\d\d);(?=\d{3}(?:;|\s*$))'
+"""Semicolon before milliseconds, as Rockwell writes it, which parts cells as well."""
+WHOLE = ':'
+END_OF_HEAD, HEADS = '***End_of_Header***', 2
+"""Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
 AFTER_EMPTY = '"'
@@ -488,6 +493,11 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins, coding = _first_lines(text)
+    ends = [line.row for line in lines if line.raw.startswith(END_OF_HEAD)]
+    if len(ends) > HEADS:
+        raise _several_sections(path, ends[HEADS])
+    if torn := _are_torn([line.raw for line in lines]):
+        lines = [Line(raw=re.sub(TORN_TIME, WHOLE, line.raw), row=line.row) for line in lines]
     widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
     with _findable(path):
@@ -525,7 +535,9 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                _check_remarks(path, content, row, head)
+                if torn:
+                    content = re.sub(TORN_TIME.encode(), WHOLE.encode(), content, flags=re.M)
+                _check_further_heads(path, content, row, head)
                 whole = any(
                     _are_whole(content, head.separator, text.line_end, one)
                     for one in {least, width}
@@ -546,14 +558,38 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 yield cells.rename(called).select(names)
 
     rows = text.lines_about
-    note = f'log {path}: its letters are not of UTF-8, they are read by {coding}'
-    notes = (note,) if coding else ()
-    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=notes)
+    notes = [f'log {path}: its letters are not of UTF-8, they are read by {coding}'] * bool(coding)
+    if torn:
+        notes.append(
+            f'log {path}: a semicolon parts milliseconds as well as cells: it is read as part of '
+            'the time'
+        )
+    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=tuple(notes))
     return source.plain(heads.cells_of(lines, head))
 
 
-def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
-    """Raise InputError for a comment of other names or units than those of the head."""
+def _are_torn(lines: Sequence[str]) -> bool:
+    """Return True if rows hold one cell more than their head, as their times are in two."""
+    counts = [line.rstrip(';\r\n').count(';') for line in lines]
+    times = [len(re.findall(TORN_TIME, line)) for line in lines]
+    first = next((at for at, count in enumerate(times) if count), 0)
+    if not first:
+        return False
+    most = max(range(first, len(lines)), key=lambda at: counts[at])
+    return counts[most] - times[most] == max(counts[:first])
+
+
+def _several_sections(path: Path, row: int) -> InputError:
+    return InputError(
+        f'log {path}: row {row} ends the head of another section, {END_OF_HEAD}, whose columns '
+        'and start may be others: save each section as a log'
+    )
+
+
+def _check_further_heads(path: Path, content: bytes, row: int, head: Head) -> None:
+    """Raise InputError for a further head, or a comment of other names or units than its own."""
+    if (at := content.find(END_OF_HEAD.encode())) >= 0:
+        raise _several_sections(path, row + content.count(LINE_FEED, 0, at))
     for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
         cells = match[1].decode(errors='replace').strip().split(head.separator)
         if len(cells) == len(head.names) > 1 and heads.are_other_names(
