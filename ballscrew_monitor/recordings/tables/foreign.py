@@ -9,6 +9,7 @@ neighbours has rows of its own.
 
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 import contextlib
 import dataclasses
@@ -18,12 +19,19 @@ import re
 from typing import Any
 from xml.etree import ElementTree
 
-from ballscrew_monitor.recordings.tables import arrays, line_messages, long_form, traces, waveforms
+from ballscrew_monitor.recordings.tables import (
+    arrays,
+    json_layouts,
+    line_messages,
+    long_form,
+    waveforms,
+)
 from ballscrew_monitor.recordings.tables.apart import frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.codings import text_of
+from ballscrew_monitor.recordings.tables.heads import with_unit
 from ballscrew_monitor.recordings.tables.layouts import ADAPTER, format_of, FORMATS, RECORDER
-from ballscrew_monitor.recordings.tables.signals import Signals
+from ballscrew_monitor.recordings.tables.signals import columns_of_records, side_by_side, Signals
 from polars.exceptions import PolarsError
 from surrogate.files import InputError, limits
 
@@ -31,6 +39,7 @@ JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
 """How JSON begins; the name of a section in brackets does otherwise."""
 NUMBERS = re.compile(rb'[\[,:"=]\s*-?\d[\d.eE+-]*\s*(?=[\],}"])')
 """Numbers of JSON, and those in quotes."""
+DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
 
@@ -123,6 +132,34 @@ def _of_its_kind(path: Path, kind: str) -> Iterator[None]:
         ) from None
 
 
+def _xml(path: Path) -> Signals:
+    """Return the signals of a trace: names by their keys, and a record for each time."""
+    text = path.read_text('utf-8', errors='replace')
+    if DOCUMENT.search(text):
+        raise Unreadable('it states a type of document')
+    root = ElementTree.fromstring(text)
+    named, keys, rows, start = {}, {}, [], ''
+    for element in root.iter():
+        tag, held = element.tag.rpartition('}')[2], element.attrib
+        if tag == 'signal' and 'key' in held:
+            parts = (held.get(one, '') for one in ('axis', 'axisName', 'name', 'description'))
+            unit = held.get('units') or held.get('unit') or ''
+            name = ' '.join(dict.fromkeys(part for part in parts if part))
+            named[held['key']] = with_unit(name, unit)
+        elif tag == 'dataSignal' and 'id' in held:
+            keys[held['id']] = held.get('name') or named.get(held.get('key', ''), held['id'])
+        elif tag == 'frameHeader':
+            start = start or held.get('startTime', '')
+        elif tag == 'rec':
+            rows.append(dict(held))
+    if not rows:
+        raise TypeError
+    counts = Counter(keys.values())
+    names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
+    frame = side_by_side(columns_of_records(rows)).rename(names, strict=False)
+    return Signals(frame=frame, start=start)
+
+
 def _long(path: Path) -> Signals:
     frame, separator = long_form.read_long(path)
     with path.open('rb') as stream:
@@ -151,12 +188,12 @@ KINDS = {
     'json': Kind(
         expected='a list of records, lists by the names of signals, or the trace of a data '
         'recorder',
-        read=traces.read_json,
+        read=json_layouts.read_json,
         names=re.compile(rb'"((?:[^"\\]|\\.)*)"\s*:', re.S),
     ),
     'xml': Kind(
         expected='a trace with signals, frames and a record for each time',
-        read=traces.read_xml,
+        read=_xml,
         names=re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
     ),
     'shdr': Kind(

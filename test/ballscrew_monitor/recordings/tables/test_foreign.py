@@ -7,7 +7,7 @@ import json
 import math
 import sys
 
-from ballscrew_monitor.recordings.tables import apart, foreign, traces
+from ballscrew_monitor.recordings.tables import apart, foreign, json_layouts
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -321,7 +321,7 @@ def test_records_are_counted_before_they_are_cells(
 ):
     path = tmp_path / name
     path.write_text(RECORDS[name]([f'a{at}' for at in range(20)]))
-    monkeypatch.setattr(traces, 'side_by_side', None)
+    monkeypatch.setattr(json_layouts, 'side_by_side', None)
     monkeypatch.setattr(foreign.limits, limit, most)
     refused(key, foreign.read_signals, path, name[4:])
 
