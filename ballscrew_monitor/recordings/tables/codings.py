@@ -7,6 +7,7 @@ A wide or packed text is decoded in memory, so that its size is bounded.
 
 """
 
+import codecs
 import contextlib
 import gzip
 from pathlib import Path
@@ -52,11 +53,8 @@ def text_of(content: bytes) -> str:
     """Return a text in its coding; a letter that is cut off at its end is left out."""
     if coding := wide_coding(content):
         return content[: len(content) // 4 * 4].decode(coding, errors='replace')
-    try:
-        return content.decode('utf-8-sig')
-    except UnicodeDecodeError as error:
-        if error.end == len(content) and 'end of data' in error.reason:
-            return content[: error.start].decode('utf-8-sig')
+    with contextlib.suppress(UnicodeDecodeError):
+        return codecs.getincrementaldecoder('utf-8-sig')().decode(content)
     lines, coding = content.splitlines(keepends=True), narrow_coding(content)
     return ''.join(line_of(line, coding) for line in lines).removeprefix('\ufeff')
 

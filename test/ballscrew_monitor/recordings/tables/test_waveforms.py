@@ -126,7 +126,7 @@ def test_a_group_without_steps_beside_waveforms_is_named(tdms, says):
 
 
 def test_a_start_that_was_never_set_is_no_date(tdms):
-    """LabVIEW counts from 1904, and so does a waveform whose start is 0."""
+    """A waveform whose start is 0 counts from 1904, as times of LabVIEW do."""
     never = np.datetime64('1904-01-01T00:00:00')
     content = guess(tdms(*speed_and_place(start_time=never, of_place={}))).content
     assert 'date_from' not in content
