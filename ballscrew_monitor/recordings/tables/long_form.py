@@ -20,6 +20,7 @@ from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.codings import text_of
 from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
+from ballscrew_monitor.recordings.tables.lines import whole_times
 from ballscrew_monitor.recordings.tables.marks import STATUS, valid_cells
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit, words_of
@@ -84,7 +85,7 @@ class LongForm:
 def first_lines(head: bytes) -> list[str]:
     """Return the whole lines of a text that begins so."""
     lines = text_of(head).splitlines()
-    return lines if head.endswith((b'\n', b'\r')) else lines[:-1] or lines
+    return whole_times(lines if head.endswith((b'\n', b'\r')) else lines[:-1] or lines)
 
 
 def read_long(path: Path) -> tuple[pl.DataFrame, str]:
@@ -94,7 +95,7 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     Lines of one time are one row, in the order in which the times first occur. Raises ValueError.
 
     """
-    lines = text_of(path.read_bytes()).splitlines()
+    lines = whole_times(text_of(path.read_bytes()).splitlines())
     form = long_form(lines)
     if form is None:
         raise Unreadable('its first lines hold a name and a value each, all of them do not')

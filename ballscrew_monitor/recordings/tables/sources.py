@@ -23,7 +23,13 @@ from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainl
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
-from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
+from ballscrew_monitor.recordings.tables.lines import (
+    are_torn,
+    NAMES_OF_SIGNS,
+    TORN_TIME,
+    unread_separator,
+    WHOLE,
+)
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
@@ -51,9 +57,6 @@ SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
 COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
 """Names of a last column whose cells a row need not have."""
-TORN_TIME = r'(?<=\d:\d\d:\d\d);(?=\d{3}(?:;|\s*$))'
-"""Semicolon before milliseconds, as Rockwell writes it, which parts cells as well."""
-WHOLE = ':'
 END_OF_HEAD, HEADS = '***End_of_Header***', 2
 """Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
@@ -496,7 +499,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     ends = [line.row for line in lines if line.raw.startswith(END_OF_HEAD)]
     if len(ends) > HEADS:
         raise _several_sections(path, ends[HEADS])
-    if torn := _are_torn([line.raw for line in lines]):
+    if torn := are_torn([line.raw for line in lines]):
         lines = [Line(raw=re.sub(TORN_TIME, WHOLE, line.raw), row=line.row) for line in lines]
     widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
@@ -566,17 +569,6 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         )
     source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=tuple(notes))
     return source.plain(heads.cells_of(lines, head))
-
-
-def _are_torn(lines: Sequence[str]) -> bool:
-    """Return True if rows hold one cell more than their head, as their times are in two."""
-    counts = [line.rstrip(';\r\n').count(';') for line in lines]
-    times = [len(re.findall(TORN_TIME, line)) for line in lines]
-    first = next((at for at, count in enumerate(times) if count), 0)
-    if not first:
-        return False
-    most = max(range(first, len(lines)), key=lambda at: counts[at])
-    return counts[most] - times[most] == max(counts[:first])
 
 
 def _several_sections(path: Path, row: int) -> InputError:

@@ -237,3 +237,8 @@ def test_names_in_the_coding_of_the_middle_of_europe_are_those_of_quantities(tmp
     rows = [f'{clock(TIME[at])};{name};{at}.5' for at in range(30) for name in names]
     path.write_bytes('\n'.join(['čas;name;value', *rows]).encode('cp1250'))
     assert source_of(path).names() == ['čas', *names]
+
+
+def test_a_semicolon_before_milliseconds_parts_no_values(tmp_path):
+    lines = lines_of(('time', 'name', 'value'), time=lambda time: clock(time).replace('.', ';'))
+    check(read(tmp_path / 'log.csv', lines))
