@@ -10,13 +10,14 @@ process ends then, and the log is refused in one sentence.
 
 from collections.abc import Mapping
 import functools
+import importlib
 from pathlib import Path
 import tempfile
 from typing import Any
 
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 import polars as pl
-from surrogate.files import limits
+from surrogate.files import InputError, limits
 from surrogate.tasks.child import result_apart
 
 
@@ -43,6 +44,17 @@ def _read(
         failure = f'log {shown} cannot be read'
         told = result_apart(task, stated, memory=limits.MEMORY, failure=failure)
         return pl.read_ipc(target), told  # its memory is the file, which stays without its name
+
+
+def library_of(module: str, path: Path, what: str, package: str = '') -> Any:
+    """Return a library that users install for one kind of file; raises InputError without it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise InputError(
+            f'log {path} is a file of {what}, which needs the package {package or module}: pip '
+            f'install {package or module}, or save its signals as CSV'
+        ) from None
 
 
 def check_room(rows: int, columns: int, cell: int = limits.NUMBER_CELL) -> None:

@@ -1,18 +1,22 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Codings of a text: UTF-16 and UTF-32 with a mark or without, NULs behind the end, gzip.
+Codings of a text: UTF-8, UTF-16 and UTF-32 with a mark or without, one byte for a letter, gzip.
 
-Such a text is decoded in memory, so that its size is bounded.
+A wide or packed text is decoded in memory, so that its size is bounded.
 
 """
 
+import codecs
+import contextlib
 import gzip
 from pathlib import Path
 import re
 import zlib
 
 from ballscrew_monitor.recordings.tables.cells import first_line
+from ballscrew_monitor.recordings.tables.names import KINDS
+from ballscrew_monitor.recordings.tables.unit_names import words_of
 from surrogate.files import InputError, limits
 
 GZIP = b'\x1f\x8b'
@@ -30,6 +34,10 @@ SHAPES = {
     'utf-16-be': re.compile(rb'(?:\0[^\0]){8,}'),
 }
 """How the first letters of a text without a mark look, most of which are of ASCII."""
+NARROW, BYTES = ('cp1252', 'cp1250'), 'latin-1'
+"""Codings of one byte for a letter: of the west and the middle of Europe, and of any byte."""
+WORDS = frozenset[str]().union(*KINDS.values())
+"""Words of quantities."""
 NUL = b'\0'
 TAIL = 4096  # [bytes] at the end of a file in which NULs may begin
 
@@ -39,6 +47,47 @@ def wide_coding(head: bytes) -> str:
     marked = next((coding for mark, coding in MARKS.items() if head.startswith(mark)), '')
     shaped = (coding for coding, shape in SHAPES.items() if shape.match(head))
     return marked or next(shaped, '')
+
+
+def text_of(content: bytes) -> str:
+    """Return a text in its coding; a letter that is cut off at its end is left out."""
+    if coding := wide_coding(content):
+        return content[: len(content) // 4 * 4].decode(coding, errors='replace')
+    with contextlib.suppress(UnicodeDecodeError):
+        return codecs.getincrementaldecoder('utf-8-sig')().decode(content)
+    lines, coding = content.splitlines(keepends=True), narrow_coding(content)
+    return ''.join(line_of(line, coding) for line in lines).removeprefix('\ufeff')
+
+
+def narrow_coding(content: bytes) -> str:
+    """
+    Return the coding of the lines that are not of UTF-8, empty if there are none.
+
+    Of those for the west and the middle of Europe it is that with more words of quantities.
+
+    """
+    others = b''.join(line for line in content.splitlines(keepends=True) if not _fits(line))
+
+    def known(coding: str) -> int:
+        return len({*words_of(others.decode(coding, 'replace'))} & WORDS)
+
+    return max(NARROW, key=known) if others else ''
+
+
+def line_of(line: bytes, coding: str) -> str:
+    """Return a line of UTF-8, or else of a coding if it fits."""
+    for each in ('utf-8', coding or BYTES):
+        with contextlib.suppress(UnicodeError):
+            return line.decode(each)
+    return line.decode(BYTES)
+
+
+def _fits(line: bytes) -> bool:
+    try:
+        line.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def decoded(path: Path, head: bytes) -> bytes | None:

@@ -399,21 +399,21 @@ def _check_unit(name: str, below: str) -> None:
         )
 
 
-def _lacks_unit(name: str, unit: str) -> bool:
+def with_unit(name: str, unit: Any) -> str:
     """
-    Return True if a cell of a row of units is to stand behind a name.
+    Return a name with its unit in brackets, if that is a text and the name holds none.
 
     The brackets of the name must hold no unit; a letter there that names a unit of another
     quantity is taken for an axis. An unknown unit is kept, lest the usual one be assumed.
 
     """
-    kind = _kind_of(name)
+    kind, unit = _kind_of(name), unit if isinstance(unit, str) else ''
     held = any(
         is_unit(text) and (len(text) > 1 or not kind or unit_and_scale(f'[{text}]', kind)[0])
         for text in BRACKETS.findall(name)
     )
     unknown = (kind not in ('', 'time') or unit[:1].isdigit()) and any(map(str.isalpha, unit))
-    return not held and (is_unit(unit) or unknown)
+    return f'{name} [{unit}]' if not held and (is_unit(unit) or unknown) else name
 
 
 def _joined(name: str, below: str) -> str:
@@ -463,7 +463,7 @@ class _Above:
         for name, unit in zip(names, units, strict=False):
             _check_unit(name, unit)
         told = unlike(
-            f'{name} [{unit}]' if _lacks_unit(name, unit) else name or unnamed
+            with_unit(name, unit) or unnamed
             for name, unit, unnamed in zip(
                 names, units, (UNNAMED.format(at + 1) for at in range(self.width)), strict=True
             )
@@ -526,10 +526,19 @@ class _Above:
                     yield row
 
     def _below_names(self) -> list[list[str]]:
-        """Return the rows from the first with a known name on, or else with names of any kind."""
-        rows = [row for _, row in self.wide]
-        is_begin = _known if any(map(_known, rows)) else lambda row: not _is_of_numbers(row)
-        return [*itertools.dropwhile(lambda row: not is_begin(row), rows)]
+        """Return the rows from the first on that names most columns."""
+        named = [row for _, row in self._rows_of_names()]
+        rows, begin = [row for _, row in self.wide], max(named, key=_known, default=None)
+        return [*itertools.dropwhile(lambda row: row is not begin, rows)]
+
+    def _rows_of_names(self) -> list[tuple[Line, list[str]]]:
+        """Return the rows that may name the columns: those of numbers, or of units alone, none."""
+        rows = [
+            (line, row)
+            for line, row in self.wide
+            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
+        ]
+        return [one for one in rows if not _is_of_units(one[1])] or rows
 
     def _labelled_rows(self, first: Sequence[list[str]]) -> Iterator[list[str]]:
         """Yield rows of numbers behind a label that stand between the names and the rows."""
@@ -576,14 +585,9 @@ class _Above:
 
     def _row_of_names(self) -> list[str]:
         """Return the lowest row that names most columns: units and remarks may stand below it."""
-        rows = [
-            (line, row)
-            for line, row in self.wide
-            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
-        ]
+        rows = self._rows_of_names()
         if not rows:
             return []
-        rows = [one for one in rows if not _is_of_units(one[1])] or rows
         at = max(range(len(rows)), key=lambda at: (_known(rows[at][1]), at))
         line, row = rows[at]
         above = rows[at - 1][1] if at else []

@@ -1,9 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Layouts in which programs write tables as JSON, brought to two: records, or lists by their names.
+Signals of JSON: of the data recorder of a SINUMERIK, and of tables as programs write them.
 
-Each layout is an entry of a table. What none of them is stays as it is.
+The layouts of tables are brought to two: records, or lists by their names. Each is an entry of a
+table. What none of them is stays as it is.
 
 """
 
@@ -12,13 +13,25 @@ from collections.abc import Callable, Mapping, Sequence
 import contextlib
 import json
 import math
+from pathlib import Path
+import re
 from typing import Any
 
 from ballscrew_monitor.recordings.tables.cells import Unreadable
-from ballscrew_monitor.recordings.tables.layouts import period_of, property_of
+from ballscrew_monitor.recordings.tables.heads import unlike, with_unit
+from ballscrew_monitor.recordings.tables.layouts import period_of, property_of, RECORDER
 from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.quantities import RATED
+from ballscrew_monitor.recordings.tables.signals import (
+    columns_of_records,
+    side_by_side,
+    Signals,
+    signals_of,
+    stated_factors,
+)
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS
 from ballscrew_monitor.recordings.words import short
+from surrogate.files import limits
 
 NAMES = ('columns', 'names', 'fields', 'headers', 'header', 'channels', 'signals')
 ROWS = ('data', 'values', 'rows', 'samples')
@@ -29,10 +42,91 @@ VALUES = ('values', 'data', 'samples', 'y')
 TIMES = ('times', 'timestamps', 'time', 'x')
 INDEX = 'index'
 """Name of a column of what pandas calls so."""
+OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
+"""Units of signals of a data recorder, which its file does not state."""
+OF_LISTS = 'its cells are lists'
+CYCLE = 'CycleTimeMs'
 Content = Any
 
 
-def parsed(text: bytes) -> Content:
+def read_json(path: Path) -> Signals:
+    """Return the signals of JSON in any of the layouts that are known."""
+    content = _parsed(path.read_bytes())
+    if limits.is_deeper(content, limits.DEPTH):
+        raise Unreadable(f'it nests deeper than {limits.DEPTH}')
+    header = content.get('Header') if isinstance(content, dict) else None
+    if isinstance(header, dict) and 'SignalListHFData' in header:
+        return _sinumerik_json(content)
+    left_out, factors, more_rows = {}, '', 0
+    content = _plain_table(content)
+    if isinstance(content, dict):
+        lists = {key: value for key, value in content.items() if isinstance(value, list)}
+        records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
+        if not records:
+            nested = {name for name, cells in lists.items() if any(map(_is_nested, cells))}
+            lists = {name: cells for name, cells in lists.items() if name not in nested}
+            left_out = dict.fromkeys(sorted(nested), OF_LISTS)
+            periods = _stated_periods(content)
+            return signals_of(lists, content, periods, left_out=left_out)
+        chosen = max(records, key=lambda name: _motion_of(lists[name]))
+        factors = ', '.join(stated_factors(content))
+        content = _plain_table(lists[chosen])
+        others = [name for name in records if name != chosen]
+        left_out = dict.fromkeys(others, f'the records of {chosen} are read')
+        more_rows = sum(_rows_alike(lists[chosen], lists[name]) for name in others)
+    if not _are_all(dict, content):
+        raise TypeError
+    nested = {name for one in content for name, cell in one.items() if _is_nested(cell)}
+    return Signals(
+        frame=side_by_side(columns_of_records(content, nested)),
+        left_out=left_out | dict.fromkeys(sorted(nested), OF_LISTS),
+        more_rows=more_rows,
+        empty_rows=[at + 1 for at, record in enumerate(content) if not record],
+        factors=factors,
+    )
+
+
+def _is_nested(cell: Any) -> bool:
+    return isinstance(cell, list | dict)
+
+
+def _rows_alike(records: Sequence[Any], others: Sequence[Any]) -> int:
+    """Return how many other records there are if they are of the signals of some, else 0."""
+    held = [one[0].keys() if isinstance(one[0], dict) else set() for one in (records, others)]
+    return len(others) if held[0] and held[0] <= held[1] else 0
+
+
+def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
+    """Return the fast signals of a data recorder: a row for each cycle of the control."""
+    header = content['Header']
+    parts: Any = content.get('Payload')
+    listed = header['SignalListHFData']
+    if not _are_all(dict, listed) or not all('Name' in signal for signal in listed):
+        raise Unreadable('SignalListHFData of its Header must be a list of signals with a Name')
+    if not _are_all(dict, parts) or not _are_all(list, [part.get('HFData', []) for part in parts]):
+        raise Unreadable('its Payload must be a list of parts, HFData in each a list of rows')
+    names = []
+    for signal in listed:
+        name, axis = str(signal['Name']), str(signal.get('Axis', ''))
+        plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
+        plain = with_unit(plain, OF_RECORDER.get(plain, ''))
+        names.append(f'{letter} {plain}' if letter else plain)
+    rows = [row for part in parts for row in part.get('HFData', ())]
+    if not rows:
+        raise Unreadable('no part of its Payload holds a row of HFData')
+    if not _are_all(list, rows) or {*map(len, rows)} != {len(names)}:
+        raise Unreadable(f'a row of HFData holds other than {len(names)} cells, one a signal')
+    columns = list(zip(*rows, strict=True))
+    held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
+    begin, cycle = header.get('Initial'), header.get(CYCLE) or math.nan
+    if not isinstance(cycle, int | float):
+        raise Unreadable('CycleTimeMs of its Header is no number')
+    start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
+    periods = {CYCLE: cycle * 1e-3} if cycle > 0.0 else {}
+    return signals_of(held, header, periods, start=start, program=RECORDER)
+
+
+def _parsed(text: bytes) -> Content:
     """
     Return the content of a JSON text, or of one in each of its lines; raises ValueError.
 
@@ -63,7 +157,7 @@ def _is_json(line: bytes) -> bool:
     return False
 
 
-def plain_table(content: Content) -> Content:
+def _plain_table(content: Content) -> Content:
     """Return a table in any known layout as a list of records, or as lists by their names."""
     for layout in LAYOUTS:
         if (table := layout(content)) is not None:
@@ -71,7 +165,7 @@ def plain_table(content: Content) -> Content:
     return content
 
 
-def stated_periods(content: Content) -> dict[str, float]:
+def _stated_periods(content: Content) -> dict[str, float]:
     """Return the periods [s] that numbers beside the signals state with their unit, by name."""
     periods: dict[str, float] = {}
     for key, value in content.items() if isinstance(content, dict) else ():
@@ -82,7 +176,7 @@ def stated_periods(content: Content) -> dict[str, float]:
     return periods
 
 
-def motion_of(records: Sequence[Any]) -> int:
+def _motion_of(records: Sequence[Any]) -> int:
     """Return how many fields of records name a quantity."""
     return sum(bool(read_name(name).kind) for name in records[0]) if records else 0
 
@@ -91,15 +185,12 @@ def _first(content: Mapping[str, Any], keys: Sequence[str]) -> Any:
     return next((content[key] for key in keys if key in content), None)
 
 
-def _with_unit(name: Any, unit: Any) -> str:
-    bare = not unit or not isinstance(unit, str) or BRACKETS.search(str(name))
-    return str(name) if bare else f'{name} [{unit}]'
+def _are_all(kind: type, values: Any) -> bool:
+    return isinstance(values, list) and all(isinstance(one, kind) for one in values)
 
 
 def _are(kind: type, values: Any) -> bool:
-    return (
-        isinstance(values, list) and bool(values) and all(isinstance(one, kind) for one in values)
-    )
+    return bool(values) and _are_all(kind, values)
 
 
 def _named_rows(content: Content) -> Content:
@@ -111,7 +202,7 @@ def _named_rows(content: Content) -> Content:
         return None
     units = _first(content, UNIT)
     told = [*(units if _are(str, units) else []), *[''] * len(names)]
-    return _columns([_with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
+    return _columns([with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
 
 
 def _columns(names: Sequence[str], rows: list[Any], content: Mapping[str, Any]) -> Content:
@@ -168,7 +259,7 @@ def _channels(content: Content) -> Content:
         if isinstance(times, list):
             table['time' if 'time' not in table else f'{names[numbers[0]]} time'] = times
         for at in numbers:
-            table[_with_unit(names[at], _first(listed[at], UNIT))] = _first(listed[at], VALUES)
+            table[with_unit(names[at], _first(listed[at], UNIT))] = _first(listed[at], VALUES)
     return _beside(content) | table
 
 
@@ -231,7 +322,7 @@ def _flat(record: Mapping[str, Any], before: str = '') -> list[tuple[str, Any]]:
     for key, value in record.items():
         name = f'{before}{key}'
         if isinstance(value, dict) and 'value' in value:
-            found.append((_with_unit(name, _first(value, UNIT)), value['value']))
+            found.append((with_unit(name, _first(value, UNIT)), value['value']))
         elif isinstance(value, dict):
             found += _flat(value, f'{name}.')
         else:
@@ -246,7 +337,7 @@ def _within(content: Content) -> Content:
     parts = [one for one in content.values() if isinstance(one, dict) and _holds_lists(one)]
     if len(parts) != 1:
         return None
-    table = plain_table(parts[0])
+    table = _plain_table(parts[0])
     return _beside(content) | table if isinstance(table, dict) else table
 
 

@@ -18,7 +18,8 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import names
 from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
-from ballscrew_monitor.recordings.tables.long_form import decoded, FEWEST, is_number
+from ballscrew_monitor.recordings.tables.codings import text_of
+from ballscrew_monitor.recordings.tables.long_form import FEWEST, is_number
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.words import short
@@ -108,7 +109,7 @@ def is_echo(lines: Sequence[str]) -> bool:
 
 def read_echo(path: Path) -> pl.DataFrame:
     """Return the joints of a topic that `ros2 topic echo --csv` wrote; raises ValueError."""
-    text = decoded(path.read_bytes())
+    text = text_of(path.read_bytes())
     lines = [line for line in text.splitlines() if line.strip() and line[0] not in MARKS]
     parts = [_message(cells) for cells in csv.reader(lines)]
     joints = parts[0][1]

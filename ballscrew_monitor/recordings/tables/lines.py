@@ -16,6 +16,10 @@ NAMES_OF_SIGNS = ('semicolon', 'tab', 'bar', 'comma', 'blank', '^', '~', '&')
 OTHER_SIGNS = ('::', ':', '!', '*', '$', '§', '¦', '\\')
 """What may part cells in a file that is not read so."""
 FEWEST = 5  # lines that hold one of them as often each
+TORN_TIME = r'(?<=\d:\d\d:\d\d);(?=\d{3}(?:;|\s*$))'
+"""Semicolon before milliseconds, as Rockwell writes it, which parts cells as well."""
+WHOLE = ':'
+FIRST = 200  # lines that show whether times are torn
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,3 +69,19 @@ def unread_separator(lines: Sequence[Line]) -> str:
         if len(counts) == 1 and counts != {0}:
             return sign
     return ''
+
+
+def are_torn(lines: Sequence[str]) -> bool:
+    """Return True if rows hold one cell more than their head, as their times are in two."""
+    counts = [line.rstrip(';\r\n').count(';') for line in lines]
+    times = [len(re.findall(TORN_TIME, line)) for line in lines]
+    first = next((at for at, count in enumerate(times) if count), 0)
+    if not first:
+        return False
+    most = max(range(first, len(lines)), key=lambda at: counts[at])
+    return counts[most] - times[most] == max(counts[:first])
+
+
+def whole_times(lines: list[str]) -> list[str]:
+    """Return lines with whole times, where the first lines are torn."""
+    return [re.sub(TORN_TIME, WHOLE, line) for line in lines] if are_torn(lines[:FIRST]) else lines

@@ -18,8 +18,9 @@ import statistics
 
 from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
-from ballscrew_monitor.recordings.tables.codings import wide_coding
+from ballscrew_monitor.recordings.tables.codings import text_of
 from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
+from ballscrew_monitor.recordings.tables.lines import whole_times
 from ballscrew_monitor.recordings.tables.marks import STATUS, valid_cells
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit, words_of
@@ -29,7 +30,6 @@ from surrogate.files import limits
 
 COMMENT = '#'
 SEPARATORS = (';', '\t', '|', ',')
-CODINGS = ('utf-8-sig', 'cp1252', 'latin-1')
 WIDEST = 12  # columns of a table with a value a line
 LOOKED_AT = 200  # of the first lines
 FEWEST = 4  # lines that show what a text is
@@ -84,21 +84,8 @@ class LongForm:
 
 def first_lines(head: bytes) -> list[str]:
     """Return the whole lines of a text that begins so."""
-    lines = decoded(head).splitlines()
-    return lines if head.endswith((b'\n', b'\r')) else lines[:-1] or lines
-
-
-def decoded(content: bytes) -> str:
-    """Return a text in the first coding that fits."""
-    if coding := wide_coding(content):
-        return content[: len(content) // 4 * 4].decode(coding, errors='replace')
-    for coding in CODINGS[:-1]:
-        try:
-            return content.decode(coding)
-        except UnicodeDecodeError as error:
-            if error.end >= len(content) - 3 and coding == CODINGS[0]:  # a letter is cut off
-                return content[: error.start].decode(coding)
-    return content.decode(CODINGS[-1])
+    lines = text_of(head).splitlines()
+    return whole_times(lines if head.endswith((b'\n', b'\r')) else lines[:-1] or lines)
 
 
 def read_long(path: Path) -> tuple[pl.DataFrame, str]:
@@ -108,7 +95,7 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     Lines of one time are one row, in the order in which the times first occur. Raises ValueError.
 
     """
-    lines = decoded(path.read_bytes()).splitlines()
+    lines = whole_times(text_of(path.read_bytes()).splitlines())
     form = long_form(lines)
     if form is None:
         raise Unreadable('its first lines hold a name and a value each, all of them do not')

@@ -28,6 +28,7 @@ SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
 ROTARY = frozenset('abc')
 AXIS = frozenset({'axis', 'achse'})
 SPINDLES = frozenset({'s', 'sp', 'spindle'})
+LOADS = frozenset('load zatížení obciążenie carico carga'.split())
 KINDS = {
     'speed': frozenset(
         'velocity velo vel speed rpm omega feed frt '
@@ -37,7 +38,7 @@ KINDS = {
     'position': frozenset(
         'position pos posf lage weg stellung posizione posición pozycja położenie poloha'.split()
     ),
-    'load': frozenset('force frc load thrust kraft forza fuerza siła síla'.split()),
+    'load': frozenset('force frc thrust kraft forza fuerza siła síla'.split()) | LOADS,
     'torque': frozenset('torque trq tcmd effort moment drehmoment couple coppia'.split()),
     'current': frozenset(
         'current curr cur amps amp iq strom courant corrente corriente prąd proud'.split()
@@ -243,7 +244,8 @@ def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
     """Return True if a name is that of a load in per cent: controls mean the torque by it."""
     of_unit = any(text.strip().lower() in {RATED, *PERCENT} for text in BRACKETS.findall(column))
     others = OTHERS & set(words)
-    return 'load' in words and others <= PERCENT and (of_unit or bool(others))
+    is_load = bool((LOADS | {'auslastung'}) & set(words))
+    return is_load and others <= PERCENT and (of_unit or bool(others))
 
 
 def _parted(match: re.Match[str]) -> str:

@@ -23,13 +23,16 @@ from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainl
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.joined_times import joined_time, joining
-from ballscrew_monitor.recordings.tables.lines import NAMES_OF_SIGNS, unread_separator
-from ballscrew_monitor.recordings.tables.long_form import decoded
+from ballscrew_monitor.recordings.tables.lines import (
+    are_torn,
+    NAMES_OF_SIGNS,
+    TORN_TIME,
+    unread_separator,
+    WHOLE,
+)
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
-from ballscrew_monitor.recordings.tables.names import KINDS
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
 from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
@@ -54,12 +57,10 @@ SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
 COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
 """Names of a last column whose cells a row need not have."""
+END_OF_HEAD, HEADS = '***End_of_Header***', 2
+"""Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
-CODINGS = ('utf-8', 'cp1252', 'cp1250', 'latin-1')
-"""Codings of a text: the first is tried in each line, one of the next for all others, the last."""
-WORDS = frozenset[str]().union(*KINDS.values())
-"""Words of quantities."""
 AFTER_EMPTY = '"'
 """The last of the letters that may follow a sign before an empty cell: ends of lines, blanks."""
 TRIES = (
@@ -258,7 +259,8 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
         return _sheet(path, layout, sheet)
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
-        frame, is_grouped, empty = signals.frame, kind in foreign.GROUPED, signals.empty_rows
+        frame, is_grouped = signals.frame, foreign.KINDS[kind].is_grouped
+        empty = signals.empty_rows
         _check_columns(path, frame.width)
         source = of_frame(path, frame.lazy(), signals.head(), frame.height, math.inf)
         lengths = [frame.height - column.null_count() for column in frame]
@@ -296,7 +298,7 @@ def is_log(path: Path) -> bool:
                 return bool(foreign.read_signals(path, kind).frame.width)
             return foreign.holds_numbers(head, kind, FEWEST)
         if codings.wide_coding(head):
-            head = decoded(head).encode()
+            head = codings.text_of(head).encode()
         text = _Text.of(path, head, head.rstrip(codings.NUL))
         return heads.holds_numbers(_first_lines(text)[0], FEWEST)
     return False
@@ -471,7 +473,7 @@ class _Text:
         """Give its lines, a letter for each byte."""
         with self.stream() as stream:
             stream.seek(self.begin())
-            text = io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end)
+            text = io.TextIOWrapper(stream, codings.BYTES, newline=self.line_end)
             yield _bounded(self.path, text)
 
 
@@ -494,6 +496,11 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins, coding = _first_lines(text)
+    ends = [line.row for line in lines if line.raw.startswith(END_OF_HEAD)]
+    if len(ends) > HEADS:
+        raise _several_sections(path, ends[HEADS])
+    if torn := are_torn([line.raw for line in lines]):
+        lines = [Line(raw=re.sub(TORN_TIME, WHOLE, line.raw), row=line.row) for line in lines]
     widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
     with _findable(path):
@@ -531,7 +538,9 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                _check_remarks(path, content, row, head)
+                if torn:
+                    content = re.sub(TORN_TIME.encode(), WHOLE.encode(), content, flags=re.M)
+                _check_further_heads(path, content, row, head)
                 whole = any(
                     _are_whole(content, head.separator, text.line_end, one)
                     for one in {least, width}
@@ -552,14 +561,27 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 yield cells.rename(called).select(names)
 
     rows = text.lines_about
-    note = f'log {path}: its letters are not of UTF-8, they are read by {coding}'
-    notes = (note,) if coding else ()
-    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=notes)
+    notes = [f'log {path}: its letters are not of UTF-8, they are read by {coding}'] * bool(coding)
+    if torn:
+        notes.append(
+            f'log {path}: a semicolon parts milliseconds as well as cells: it is read as part of '
+            'the time'
+        )
+    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=tuple(notes))
     return source.plain(heads.cells_of(lines, head))
 
 
-def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
-    """Raise InputError for a comment of other names or units than those of the head."""
+def _several_sections(path: Path, row: int) -> InputError:
+    return InputError(
+        f'log {path}: row {row} ends the head of another section, {END_OF_HEAD}, whose columns '
+        'and start may be others: save each section as a log'
+    )
+
+
+def _check_further_heads(path: Path, content: bytes, row: int, head: Head) -> None:
+    """Raise InputError for a further head, or a comment of other names or units than its own."""
+    if (at := content.find(END_OF_HEAD.encode())) >= 0:
+        raise _several_sections(path, row + content.count(LINE_FEED, 0, at))
     for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
         cells = match[1].decode(errors='replace').strip().split(head.separator)
         if len(cells) == len(head.names) > 1 and heads.are_other_names(
@@ -629,8 +651,9 @@ def _first_lines(text: _Text) -> tuple[list[Line], list[int], str]:
             begins.append(begin)
             if len(lines) >= LINES or at > limits.MEGA:
                 break
-    coding = _coding(lines)
-    read = (_decoded(line, coding or CODINGS[0]) for line in lines)
+    written = [line.encode(codings.BYTES) for line in lines]
+    coding = codings.narrow_coding(b''.join(written))
+    read = (codings.line_of(line, coding) for line in written)
     return [Line(raw=raw, row=row) for raw, row in zip(read, rows)], [*begins, at], coding
 
 
@@ -660,35 +683,6 @@ def _parts(stream: BinaryIO, line_end: bytes) -> Iterator[bytes]:
 def _is_odd(block: bytes) -> bool:
     """Return True if a text has an odd number of quotes."""
     return b'"' in block and block.count(b'"') % 2 == 1
-
-
-def _decoded(line: str, coding: str) -> str:
-    """Return a line of which each letter is a byte, in UTF-8 or else a coding if it fits."""
-    for each in (CODINGS[0], coding):
-        with contextlib.suppress(UnicodeError):
-            return line.encode(CODINGS[-1]).decode(each)
-    return line
-
-
-def _coding(lines: Sequence[str]) -> str:
-    """
-    Return the coding of the lines that are not of UTF-8, empty if there are none.
-
-    Of those for the west and the middle of Europe it is that with more words of quantities.
-
-    """
-    others = ''
-    for line in lines:
-        try:
-            line.encode(CODINGS[-1]).decode()
-        except UnicodeError:
-            others += line
-    content = others.encode(CODINGS[-1])
-
-    def known(coding: str) -> int:
-        return len({*words_of(content.decode(coding, 'replace'))} & WORDS)
-
-    return max(CODINGS[1:-1], key=known) if others else ''
 
 
 def _check_columns(path: Path, count: int) -> None:

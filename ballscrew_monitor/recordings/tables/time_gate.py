@@ -30,6 +30,9 @@ REGULAR = 0.8  # of the usual number of rows that share a time
 UNEVEN = 0.1  # standard deviation of the rows that share a time over their mean
 MOST = 0.9  # of the times that are shared by the usual number
 HOUR = 3600.0  # [s]
+HALF_DAY = 12 * HOUR  # after which a clock without AM and PM begins again
+OF_A_CLOCK = (DAY, HALF_DAY)  # after which times of day may begin again [s]
+LACKING = 100  # rows, at most, that may lack where a clock begins again
 CLOSE = 10.0  # [s] by which the step of a clock may miss an hour
 SUMMER = (3, 9, 10)  # months in which clocks are set on, in the north and in the south
 SUNDAY = 6
@@ -60,7 +63,7 @@ class TimeGate:
         """
         Begin with no row; a clock on the `wall` may be set back or on by an hour.
 
-        Any other may begin again after one of `wraps` [s], if a regular step goes on there.
+        It may begin again after one of `wraps` [s], if few rows lack there at most.
 
         """
         self._wall, self._wraps = wall, wraps
@@ -72,6 +75,8 @@ class TimeGate:
         self._within = 0  # runs that begin in the second in which the one before ends
         self._pending: list[tuple[float, int]] = []  # late rows at the end
         self._before = 0.0  # time of the row before them [s]
+        self._latest_hour = 0.0  # [s] of a day
+        self._half = 0  # row in which a clock of 12 hours begins again
         self._last = np.zeros(0)
         self._steps: Counter[float] = Counter()
         self._shares: Counter[int] = Counter()
@@ -88,6 +93,8 @@ class TimeGate:
             moment = float(times[at]), int(rows[at])
             self._least = min(self._least, moment, key=lambda one: one[0])
             self._most = max(self._most, moment, key=lambda one: one[0])
+        if HALF_DAY in self._wraps:
+            self._latest_hour = max(self._latest_hour, float(np.mod(times, DAY).max()))
         cuts = self._set_on(times)
         self._add_steps(times, rows)
         self.count += len(times)
@@ -198,8 +205,14 @@ class TimeGate:
         self._unordered |= 2 * int((steps < 0.0).sum()) > len(steps)
         fall, step = self._before - first, self.step
         is_hour = self._wall and HOUR - CLOSE <= fall <= HOUR and abs(first - run.begin) > CLOSE
-        missed = (wrap for wrap in self._wraps if abs(wrap - fall - step) < step / 2)
+        missed = (
+            wrap
+            for wrap in self._wraps
+            if 0.0 < wrap - fall < max(1.5 * step, min(LACKING * step, wrap / LACKING))
+            and (wrap != HALF_DAY or self._latest_hour < HALF_DAY + HOUR)
+        )
         if back := HOUR if is_hour else next(missed, 0.0):
+            self._half = self._half or row * (back == HALF_DAY)
             run.shift += back
             self.clocks.append((row, back))
             run.rows += len(self._pending)
@@ -316,6 +329,12 @@ class TimeGate:
             return (
                 f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',
                 INSTEAD,
+            )
+        if self._half and self._most[0] > DAY:  # midnight is no fall where dates go on
+            return (
+                f'it falls by 12 h in row {self._half}, as times of a clock of 12 hours do that '
+                'lack AM and PM',
+                f'write these, or hours of up to 23, or {INSTEAD}',
             )
         if self._within > 1:
             return (

@@ -23,7 +23,13 @@ from ballscrew_monitor.recordings.tables.other_tables import (
 from ballscrew_monitor.recordings.tables.quantities import DAY, SCALES, SINCE_1904
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
-from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, REGULAR, SHARED, TimeGate
+from ballscrew_monitor.recordings.tables.time_gate import (
+    INSTEAD,
+    OF_A_CLOCK,
+    REGULAR,
+    SHARED,
+    TimeGate,
+)
 from ballscrew_monitor.recordings.words import counted, short, Shown
 import numpy as np
 from numpy.typing import NDArray
@@ -245,7 +251,7 @@ class Times:
         time = table.readings[group.time_columns[0]] if mapping.time else None
         # A clock on the wall may be set back.
         wall = time is not None and time.is_time and not time.is_zoned
-        wraps = _wraps(mapping.time) if mapping.time and not (time and time.is_time) else []
+        wraps = OF_A_CLOCK if time and time.is_time else _wraps(mapping.time)
         self.gate, self._course = TimeGate(wall=wall, wraps=wraps), Course()
         silence = Silence()
         self._spread: Spread | None = None
@@ -589,8 +595,10 @@ class Course:
             self.steps.add(stamps, np.searchsorted(self._run_begins, times, 'right'))
 
 
-def _wraps(time: Column) -> list[float]:
+def _wraps(time: Column | None) -> list[float]:
     """Return after which times [s] the numbers of a time may begin again and go on."""
+    if time is None:
+        return []
     unit = abs(time.scale) * SCALES[time.unit][0]
     return [DAY, *(unit * count for count in COUNTERS)]
 

@@ -37,8 +37,9 @@ LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table
 FEWEST = (20, 3)  # rows of numbers of a table, if not those of any sheet
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
 ANOTHER = 'a sheet before it has rows of numbers'
-NO_DAY = r'^(?:1899-12-31|1904-01-01) '
-"""Day that a sheet adds to a time of day."""
+OF_DAY = r'^(1899-12-31|19(?:00|04)-0[12]-\d\d) (\d\d)(:.*)$'
+"""Time of a day with the date that a sheet adds to it: hours count from the first of these."""
+DAYS = ('1899-12-31', '1904-01-01')
 FROM_1904 = re.compile(rb'<(?:\w+:)?workbookPr\b[^>]*\bdate1904\s*=\s*["\'](?:1|true)')
 SHEET = b'sheetData'  # the element that holds the cells
 CELL = re.compile(rb'[<:]c[\s/>]')
@@ -135,7 +136,18 @@ def _texts(path: str, name: str) -> pl.DataFrame:
             drop_empty_rows=False,
             drop_empty_cols=False,
         )
-        return cells.select(pl.all().cast(pl.String).str.replace(NO_DAY, ''))
+        return cells.select([*map(_hours, cells.columns)])
+
+
+def _hours(name: str) -> pl.Expr:
+    """Return a column without the dates that a sheet adds to times: a day later is 24 h more."""
+    cells = pl.col(name).cast(pl.String)
+    date, hours, rest = (cells.str.extract(OF_DAY, group + 1) for group in range(3))
+    first, later = (pl.lit(day).str.to_date() for day in DAYS)
+    day = date.str.to_date(strict=False)
+    days = (day - pl.when(day < later).then(first).otherwise(later)).dt.total_days()
+    of_day = (24 * days + hours.cast(pl.Int64)).cast(pl.String).str.zfill(2) + rest
+    return of_day.fill_null(cells).alias(name)
 
 
 def _check_size(path: Path) -> int:

@@ -30,7 +30,7 @@ from ballscrew_monitor.recordings.tables.other_tables import (
     TAKE_OUT,
 )
 from ballscrew_monitor.recordings.tables.quantities import MOTION, SCALES
-from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
+from ballscrew_monitor.recordings.tables.time_gate import OF_A_CLOCK, RATE, TimeGate
 from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.words import short
 import numpy as np
@@ -112,7 +112,8 @@ class TimeColumn:
                 return 'it holds fewer than two numbers beside those of the motion'
             if not np.ptp(times):
                 return f'it is {times[0]:.12g} in all rows'
-            gate = TimeGate(wall=one.column in log.timed)
+            is_timed = one.column in log.timed
+            gate = TimeGate(wall=is_timed, wraps=OF_A_CLOCK if is_timed else ())
             unit = self.unit_of(one, times)[0]
             gate.add(times * (SCALES[unit][0] if unit else 1.0), numbers)
             gate.finish()

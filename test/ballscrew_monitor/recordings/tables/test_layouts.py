@@ -27,6 +27,7 @@ BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
 ROWS = 60
 DRAWN = 20
 DAY = 86400.0
+TO_ONE, TO_MIDNIGHT = 3609.7, 43209.7  # [s] after the begin, 0.3 s before a clock may begin again
 
 
 def at(form, digits=3):
@@ -64,6 +65,8 @@ TIMES = {
     'month before day in words': ('Time', at('%b %d %Y %H:%M:%S.FFF')),
     'colon': ('Zeit', at('%Y-%m-%d %H:%M:%S:FFF')),
     'hours': ('Uhrzeit', at('%H:%M:%S.FFF')),
+    'half days without a word': ('Time', at('%I:%M:%S.FFF')),
+    'semicolon': ('Time', at('%H:%M:%S;FFF')),
     's': ('Time [s]', lambda seconds: f'{seconds:.3f}'),
     'ms': ('Time [ms]', lambda seconds: f'{1e3 * seconds:.1f}'),
     'no unit': ('time', lambda seconds: f'{seconds:.3f}'),
@@ -138,6 +141,7 @@ def layout(draw):
         'factors': draw.random() < 0.1,
         'unit in words': draw.random() < 0.2,
         'note': draw.choice(['', ' (X)', ' (ist)', ' (Achse 1)']),
+        'later': draw.choice([0.0, 0.0, TO_ONE, TO_MIDNIGHT]),
     }
 
 
@@ -170,7 +174,7 @@ def written(made):
         return f'"{text}"' if made['quoted'] or made['separator'] in text else text
 
     def moment(seconds):
-        text = clock(seconds)
+        text = clock(made['later'] + seconds)
         plain = text.replace('.', '', 1).isdigit()
         return text.replace('.', made['sign']) if plain else text
 

@@ -229,3 +229,16 @@ def test_the_table_that_values_make_is_counted_before(tmp_path, refused, monkeyp
     assert len(source_of(path).names()) == 21
     monkeypatch.setattr(limits, 'SPARSE', 200 * 21 * limits.TEXT_CELL - 1)
     refused('wide', source_of, path)
+
+
+def test_names_in_the_coding_of_the_middle_of_europe_are_those_of_quantities(tmp_path):
+    names = ('poloha X [mm]', 'rychlost X [mm/s]', 'síla X [N]', 'průměr X [mm]')
+    path = tmp_path / 'log.csv'
+    rows = [f'{clock(TIME[at])};{name};{at}.5' for at in range(30) for name in names]
+    path.write_bytes('\n'.join(['čas;name;value', *rows]).encode('cp1250'))
+    assert source_of(path).names() == ['čas', *names]
+
+
+def test_a_semicolon_before_milliseconds_parts_no_values(tmp_path):
+    lines = lines_of(('time', 'name', 'value'), time=lambda time: clock(time).replace('.', ';'))
+    check(read(tmp_path / 'log.csv', lines))

@@ -292,3 +292,57 @@ def test_letters_of_one_byte_are_those_that_make_words_and_it_is_said(
     assert source.notes == (says('coding', path=path, coding=coding),)
     path.write_text('\n'.join([';'.join(names), '0;1;2;3', '1;2;3;4']), encoding='utf-8')
     assert sources.source_of(path).notes == ()
+
+
+def torn_rows(names, end=''):
+    """Return a table of Rockwell whose times of 20 ms are not quoted, for 60 rows."""
+    rows = (f'09:00:0{at // 50};{20 * (at % 50):03d};{at}.5;7.25{end}' for at in range(60))
+    return '\n'.join([';'.join(names), *rows])
+
+
+def test_a_semicolon_before_milliseconds_parts_no_cells(tmp_path, says):
+    path = tmp_path / 'log.csv'
+    path.write_text(torn_rows(['Time', 'X position [mm]', 'X speed [mm/s]']))
+    source = sources.source_of(path)
+    rows = source.first_rows()
+    assert rows['Time'].to_list() == [
+        f'09:00:0{at // 50}:{20 * (at % 50):03d}' for at in range(60)
+    ]
+    assert rows['X position [mm]'].to_list() == [f'{at}.5' for at in range(60)]
+    assert source.notes == (says('torn', path=path),)
+
+
+@pytest.mark.parametrize('end', ['', ';'])
+def test_milliseconds_in_a_column_of_their_own_are_cells(end, tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text(torn_rows(['Time', 'Millitm', 'X position [mm]', 'X speed [mm/s]'], end))
+    rows = sources.source_of(path).first_rows()
+    assert rows['X position [mm]'].to_list() == [f'{at}.5' for at in range(60)]
+    assert rows['X speed [mm/s]'][0] == '7.25'
+
+
+def section(rows, names):
+    """Return a section of a file of LabVIEW, as it describes them."""
+    count = len(names)
+    head = [f'Channels\t{count}', 'Samples' + f'\t{rows}' * count, 'Delta_X' + '\t0.02' * count]
+    cells = ('\t'.join([f'{0.02 * at:.2f}', *[f'{at}.5'] * count]) for at in range(rows))
+    return [*head, END, '\t'.join(['X_Value', *names, 'Comment']), *cells, '']
+
+
+END = '***End_of_Header***\t'
+WAVES = ['X position [mm]', 'X velocity [mm/s]']
+
+
+@pytest.mark.parametrize('rows', [60, 3000])
+@pytest.mark.parametrize('names', [WAVES, ['Temperature'], [*WAVES, 'X force [N]']])
+def test_a_file_of_labview_with_several_sections_is_refused_in_a_sentence(
+    rows, names, tmp_path, refused
+):
+    path = tmp_path / 'log.lvm'
+    lines = ['LabVIEW Measurement\t', 'Separator\tTab', END, *section(rows, WAVES)]
+    path.write_text('\n'.join(lines))
+    assert sources.source_of(path).first_rows().height >= min(rows, sources.LINES)
+    path.write_text('\n'.join([*lines, *section(rows, names)]))
+    with refused('sections', row=len(lines) + 4):
+        for _ in sources.source_of(path).blocks(['X_Value']):
+            pass

@@ -82,6 +82,55 @@ def test_a_counter_that_overflows_often_is_no_time(read, refused):
     assert read(np.arange(1200) * 1000 % 65536, unit='us').count == 1200
 
 
+LATE = dt.datetime(2025, 7, 14, 23, 59, 58)
+NOON = dt.datetime(2025, 7, 14, 12, 59, 58)  # an hour after which a clock of 12 hours falls
+
+
+def texts(begin, form, *, lacking=0, day=''):
+    """Return 400 times of a clock each 10 ms, of which some lack from the 200th on."""
+    rows = np.append(np.arange(200), 200 + lacking + np.arange(200))
+    moments = [begin + dt.timedelta(milliseconds=10 * int(row)) for row in rows]
+    return [f'{day}{moment:{form}}'[:-3] for moment in moments]
+
+
+@pytest.mark.parametrize('lacking', [0, 1, 7, 90])
+def test_a_time_goes_on_where_rows_lack_as_its_clock_begins_again(lacking, read):
+    counter = (
+        2**32 - 2_000_000 + 10_000 * np.append(np.arange(200), 200 + lacking + np.arange(200))
+    )
+    for times, unit in (
+        (counter % 2**32, 'us'),
+        (texts(LATE, '%H:%M:%S.%f', lacking=lacking), 's'),
+        (texts(LATE, '%H:%M:%S.%f', lacking=lacking, day='14.07.2025 '), 's'),
+        (texts(NOON, '%I:%M:%S.%f', lacking=lacking), 's'),
+    ):
+        series = read(times, unit=unit)
+        assert (series.count, series.run_begins) == (400, (series.begin,))
+        assert (series.end - series.begin) / 1e9 == pytest.approx(0.01 * (399 + lacking))
+        assert any('go on' in note for note in series.notes)
+
+
+def test_a_date_that_stays_beside_times_through_midnight_is_that_of_the_begin(tmp_path, write_csv):
+    times = texts(LATE, '%H:%M:%S.%f')
+    columns = {'Date': ['14.07.2025'] * 400, 'Time': times, 'X speed [mm/s]': np.arange(400.0)}
+    path = write_csv(tmp_path / 'log.csv', columns, separator=';')
+    series = read_series(path, make_map(guess(path).content))
+    assert series.begin / 1e9 == LATE.replace(tzinfo=dt.UTC).timestamp()
+    assert (series.end - series.begin) / 1e9 == pytest.approx(3.99)
+    assert any('86400 s in row 202: times go on there' in note for note in series.notes)
+
+
+def test_a_clock_of_12_hours_beside_dates_is_asked_for_its_halves(read, refused):
+    refused('halves', read, texts(NOON, '%d.%m.%Y %I:%M:%S.%f'))
+
+
+def test_a_log_of_times_up_to_24_h_that_begins_again_12_h_before_has_runs(read):
+    times = [*texts(LATE, '%H:%M:%S.%f')[:200], *texts(LATE, '%I:%M:%S.%f')[200:]]
+    series = read(times)
+    assert len(series.run_begins) == 2
+    assert any('each judged apart' in note for note in series.notes)
+
+
 def test_milliseconds_without_leading_zeros_are_no_time(read, refused):
     times = [f'2026-01-02 11:59:{54 + row // 500}.{2 * row % 1000}' for row in range(1500)]
     refused('no_zeros', read, times)

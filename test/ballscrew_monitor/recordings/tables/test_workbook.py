@@ -330,3 +330,21 @@ def test_a_time_of_day_in_a_workbook_from_1904_has_no_day(tmp_path):
         made.active.append([dt.time(12, 0, row), 1.0, 2.0])
     made.save(path)
     assert read_sheet(path).cells.row(29)[0] == '12:00:29'
+
+
+@pytest.mark.parametrize('form', ['hh:mm:ss', '[h]:mm:ss.000'])
+@pytest.mark.parametrize('hours', [23, 71, 130])
+@pytest.mark.parametrize('epoch', [CALENDAR_WINDOWS_1900, CALENDAR_MAC_1904])
+def test_hours_of_a_workbook_go_on_through_midnight(epoch, hours, form, tmp_path):
+    """A spreadsheet adds times of a day to more than one day, and shows its hours or all."""
+    made, path = openpyxl.Workbook(), tmp_path / 'log.xlsx'
+    made.epoch = epoch
+    made.active.append(['time', 'x velocity [mm/s]'])
+    for row in range(60):
+        made.active.append([(hours + (3570 + row) / 3600) / 24, row])
+        made.active.cell(row=row + 2, column=1).number_format = form
+    made.save(path)
+    series = read_series(path, make_map(guess(path).content))
+    assert series.count == 60
+    assert (series.end - series.begin) / 1e9 == pytest.approx(59.0, abs=0.01)
+    assert not any('without' in note for note in series.notes)
