@@ -19,7 +19,8 @@ from ballscrew_monitor.recordings.recover import recover
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.points import PointColumns, read_points
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.settings.parameters import read_file
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -198,7 +199,7 @@ def parquet_log(folder):
 
 def read_log(path):
     guess(path)
-    names = column_names(path)
+    names = source_of(path).names()
     list(open_table(path, names, optional=names).blocks())
 
 

@@ -127,11 +127,6 @@ class Table:
         }
 
 
-def column_names(path: Path, layout: Layout | None = None) -> list[str]:
-    """Return the names of all columns of a log; raises InputError when it is no table."""
-    return source_of(path, layout).names()
-
-
 def open_table(
     log: Path | Source,
     names: Collection[str],

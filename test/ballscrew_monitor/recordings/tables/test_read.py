@@ -9,7 +9,8 @@ import tempfile
 
 from ballscrew_monitor.recordings.tables import cells, read, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.read import column_names, look_through, open_table
+from ballscrew_monitor.recordings.tables.read import look_through, open_table
+from ballscrew_monitor.recordings.tables.sources import source_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -100,10 +101,10 @@ def test_other_names_or_units_below_the_head_are_refused(below, tmp_path, refuse
     rows = 9 * '1;2\n'
     for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
         path = text_log(tmp_path, f'{head}\n{rows}{below}\n{rows}')
-        refused('other_names', open_table, path, column_names(path))
+        refused('other_names', open_table, path, source_of(path).names())
     for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
         path = text_log(tmp_path, f'{head}\n{rows}{head}\n{rows}ERROR;ERROR\n')
-        assert np.nansum(open_table(path, column_names(path)).head(99)['v [mm/s]']) == 36
+        assert np.nansum(open_table(path, source_of(path).names()).head(99)['v [mm/s]']) == 36
 
 
 @pytest.mark.parametrize('sign', [';', ',', '\t'])
@@ -215,7 +216,7 @@ def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path, says):
 
 
 def test_what_is_not_there_or_not_converted_is_a_sentence(tmp_path, refused, monkeypatch):
-    refused('cannot_read_such', column_names, tmp_path / 'log.csv')
+    refused('cannot_read_such', source_of, tmp_path / 'log.csv')
 
     def fail(texts):
         raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')

@@ -9,7 +9,8 @@ import zipfile
 
 from ballscrew_monitor.recordings.tables import codings, foreign, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.sources import source_of
 import numpy as np
 import openpyxl
 import polars as pl
@@ -72,9 +73,9 @@ def log(tmp_path):
 @pytest.mark.parametrize('form', FORMS)
 def test_a_log_is_the_same_in_each_form(form, log):
     path = log(FORMS[form])
-    assert column_names(path) == NAMES
+    assert source_of(path).names() == NAMES
     if form != 'comments':
-        assert column_names(path, LAYOUT) == NAMES
+        assert source_of(path, LAYOUT).names() == NAMES
     table = open_table(path, NAMES[:3])
     assert len(table.notes) == (form in ONE_BYTE)
     found = table.head(99)
@@ -86,12 +87,12 @@ def test_a_log_is_the_same_in_each_form(form, log):
 def test_names_are_in_one_line_unlike_and_without_control_characters(log, tmp_path):
     path = log(b'"a ""b""\n[mm]";x\x1b[31m; x ;x;x\n1;2;3;4;5\n1;2;3;4;6\n')
     names = ['a "b" [mm]', 'x\\x1b[31m', 'x', 'x_duplicated_0', 'x_duplicated_1']
-    assert column_names(path) == names
+    assert source_of(path).names() == names
     assert list(open_table(path, names).head(1)[names[-1]]) == [5.0]
     parquet = tmp_path / 'log.parquet'
     pl.DataFrame({'a\n\x07b': [1.0], 'a \x07b': [2.0]}).write_parquet(parquet)
     held = ['a \\x07b', 'a \\x07b_duplicated_0']
-    assert column_names(parquet) == held
+    assert source_of(parquet).names() == held
     assert list(open_table(parquet, held).head(1)[held[1]]) == [2.0]
 
 
@@ -105,21 +106,21 @@ def test_dates_and_times_of_a_sheet_are_those_of_the_calendar(log):
 
 
 def test_a_missing_head_and_damage_are_sentences(log, refused):
-    refused('short_sheet', column_names, log(workbook([['a'], [1.0]])), Layout(skip=2))
-    refused('no_head', column_names, log(b'a;b\n1;2\n'), Layout(skip=2))
-    refused('odd', column_names, log(b'\xff\xfea'))
-    refused('no_book', column_names, log(workbook(ROWS)[:-30]))
+    refused('short_sheet', source_of, log(workbook([['a'], [1.0]])), Layout(skip=2))
+    refused('no_head', source_of, log(b'a;b\n1;2\n'), Layout(skip=2))
+    refused('odd', source_of, log(b'\xff\xfea'))
+    refused('no_book', source_of, log(workbook(ROWS)[:-30]))
     content = io.BytesIO()
     with zipfile.ZipFile(content, 'w') as archive:
         archive.writestr('a.txt', 'no sheet')
-    refused('no_sheet', column_names, log(content.getvalue()))
+    refused('no_sheet', source_of, log(content.getvalue()))
 
 
 def test_what_is_read_at_once_is_bounded(log, refused, monkeypatch):
     monkeypatch.setattr(limits, 'WORKBOOK', 1000)
-    refused('wide_letters', column_names, log(csv_text().encode('utf-16') * 2))
+    refused('wide_letters', source_of, log(csv_text().encode('utf-16') * 2))
     monkeypatch.setattr(limits, 'MEGA', 100)
-    refused('packed', column_names, log(workbook(ROWS)))
+    refused('packed', source_of, log(workbook(ROWS)))
 
 
 def test_a_workbook_that_says_less_than_it_holds_is_refused(log, refused, monkeypatch):
@@ -131,7 +132,7 @@ def test_a_workbook_that_says_less_than_it_holds_is_refused(log, refused, monkey
     lying = content.getvalue().replace(
         (1_000_000).to_bytes(4, 'little'), (9).to_bytes(4, 'little')
     )
-    refused('packed', column_names, log(lying))
+    refused('packed', source_of, log(lying))
 
 
 @pytest.mark.parametrize(
@@ -150,9 +151,9 @@ def test_lines_and_columns_are_bounded(text, key, log, monkeypatch, refused):
         monkeypatch.setattr(limits, name, most)
     path = log(text.encode())
     if key is None:
-        assert column_names(path) == ['a', 'b']
+        assert source_of(path).names() == ['a', 'b']
     else:
-        refused(key, column_names, path)
+        refused(key, source_of, path)
 
 
 def test_a_small_parquet_file_of_many_cells_is_refused(tmp_path, refused, monkeypatch):

@@ -41,6 +41,7 @@ CELLS = {
     'formula': lambda text, unit: f'="{text}"',
     'apostrophe': lambda text, unit: f"'{text}",
     'D': lambda text, unit: f'{float(text):.6E}'.replace('E', 'D'),
+    'D, bare point': lambda text, unit: f'{round(1000 * float(text))}.D-3',
     'unit': lambda text, unit: f'{text} {unit}',
     'unit, no blank': lambda text, unit: f'{text}{unit}',
     'wide': lambda text, unit: text.translate(WIDE),
