@@ -31,6 +31,8 @@ from ballscrew_monitor.recordings.tables.signals import (
 )
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS
 from ballscrew_monitor.recordings.words import short
+import numpy as np
+import polars as pl
 from surrogate.files import limits
 
 NAMES = ('columns', 'names', 'fields', 'headers', 'header', 'channels', 'signals')
@@ -45,7 +47,7 @@ INDEX = 'index'
 OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 """Units of signals of a data recorder, which its file does not state."""
 OF_LISTS = 'its cells are lists'
-CYCLE = 'CycleTimeMs'
+CYCLE, COUNTERS = 'CycleTimeMs', ('CYCLE', 'HFProbeCounter')
 Content = Any
 
 
@@ -118,12 +120,28 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
         raise Unreadable(f'a row of HFData holds other than {len(names)} cells, one a signal')
     columns = list(zip(*rows, strict=True))
     held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
+    _check_cycles([str(signal['Name']) for signal in listed], columns)
     begin, cycle = header.get('Initial'), header.get(CYCLE) or math.nan
     if not isinstance(cycle, int | float):
         raise Unreadable('CycleTimeMs of its Header is no number')
     start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
     periods = {CYCLE: cycle * 1e-3} if cycle > 0.0 else {}
     return signals_of(held, header, periods, start=start, program=RECORDER)
+
+
+def _check_cycles(names: Sequence[str], columns: Sequence[Sequence[Any]]) -> None:
+    """Raise Unreadable if a counter of cycles among some signals leaves cycles out."""
+    for name in (one for one in names if one in COUNTERS):
+        counts = pl.Series(columns[names.index(name)], dtype=pl.Float64, strict=False)
+        steps = np.diff(np.array(counts))
+        usual = np.median(steps) if steps.size else math.nan
+        if usual > 0.0 and (steps > usual).any():
+            row = int((steps > usual).argmax())
+            raise Unreadable(
+                f'{name} goes on by {steps[row]:g} behind row {row + 1} of its HFData, by '
+                f'{usual:g} from row to row before: rows lack there, save what is before and '
+                'behind as files of their own'
+            )
 
 
 def _parsed(text: bytes) -> Content:

@@ -25,6 +25,7 @@ RATE = 1e5  # [Hz] no table has more rows in a second
 LONGEST = 10 * 365.25 * DAY  # [s] that a recording may last
 AGAIN = 10  # rows that rise, all earlier than one before them: more than a few that came late
 WINDOW = 512  # rows that are looked at together where some come late
+LATE = 0.1  # of the rows of a wall clock that may be earlier than one before them
 SHARED = 0.05  # of the rows that may have the time of the row before
 REGULAR = 0.8  # of the usual number of rows that share a time
 UNEVEN = 0.1  # standard deviation of the rows that share a time over their mean
@@ -336,9 +337,10 @@ class TimeGate:
                 'lack AM and PM',
                 f'write these, or hours of up to 23, or {INSTEAD}',
             )
-        if self._within > 1:
+        back = self._within + self.late * (self._wall and self.late > LATE * self.count)
+        if back > 1:
             return (
-                f'it goes back within a second {self._within} times, first in row '
+                f'it goes back within a second {back} times, first in row '
                 f'{self._first_fall[2]}, as milliseconds do that are written without leading '
                 'zeros',
                 INSTEAD,

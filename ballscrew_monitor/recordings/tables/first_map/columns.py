@@ -99,7 +99,7 @@ class Columns:
         if program is None:
             return ''
         labelled = program.labelled if one.column in self.head.labelled else ''
-        return dict(program.times).get(one.column.split(' [')[0], labelled)
+        return dict(program.times).get(names.base_of(one.column.split(' [')[0]), labelled)
 
     def stands_unnamed(self, one: Named) -> bool:
         """Return True for a column without a name that stands before or behind one of an input."""

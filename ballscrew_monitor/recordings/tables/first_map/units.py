@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.first_map.draft import Draft
 from ballscrew_monitor.recordings.tables.first_map.machine import LEADS
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, NUMBERS
-from ballscrew_monitor.recordings.tables.quantities import MOTION, UNITS
+from ballscrew_monitor.recordings.tables.quantities import MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.words import short
 import numpy as np
@@ -49,6 +49,10 @@ def set_unit(draft: Draft, name: str, kind: str) -> None:
     """Let the map say in which unit an input is, by its name or numbers, or ask for it."""
     place, stated = draft.used[name][kind], draft.log.axes[name][kind].unit
     if 'unit' in place:
+        return
+    if stated == RATED and 0.0 < np.nanmax(np.abs(draft.log.extremes[place['column']])) <= 1.0:
+        told = f'{place["column"]} holds {_largest(draft.log.extremes[place["column"]])} at most'
+        draft.ask(f'{name}.{kind}.unit', f": {told}: '%', with scale 100 beside if 1 means 100 %")
         return
     if stated:
         place['unit'] = stated

@@ -48,6 +48,22 @@ def test_a_load_of_a_data_recorder_is_a_torque_in_per_cent(tmp_path):
     assert axis['torque_rated_Nm'] is None
 
 
+@pytest.mark.parametrize('counter', ['CYCLE', 'HFProbeCounter'])
+def test_cycles_that_a_data_recorder_lost_are_refused(counter, tmp_path, refused):
+    """The counter of the control goes on by 41 behind row 200; one that rises evenly is read."""
+    path = tmp_path / 'log.json'
+    sinumerik_json(path)
+    text = path.read_text().replace('CYCLE"', f'{counter}"')
+    path.write_text(text)
+    assert guess(path).content['time'] == {'rate_Hz': 500.0}
+    content = json.loads(text)
+    for part in content['Payload']:
+        for row in part.get('HFData', ()):
+            row[0] += 40 * (row[0] >= 200)
+    path.write_text(json.dumps(content))
+    refused('lost_cycles', guess, path)
+
+
 def write_lists(path, beside):
     path.write_text(json.dumps(beside | {'x position [mm]': [*PLACE], 'x speed [mm/s]': [*SPEED]}))
 

@@ -1082,3 +1082,28 @@ def test_a_warm_temperature_without_a_unit_may_be_in_degF(guessed, says):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x oil temperature': 68.0 + 0.1 * TIME})
     least, most = '68', f'{68.0 + 0.1 * TIME[-1]:.3g}'
     assert made.unstated == (says('temperature_maybe_in_degF', least=least, most=most),)
+
+
+def test_parts_of_one_in_a_column_of_per_cent_are_asked_for(guessed, says):
+    """A workbook shows 0.5 as 50 %, and holds 0.5."""
+    part = 0.5 * np.cos(TIME)
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'X torque [%]': part})
+    assert says('part_or_per_cent') in made.unstated
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'X torque [%]': 100.0 * part})
+    assert made.content['axes']['x']['torque']['unit'] == '%'
+
+
+@pytest.mark.parametrize('shift', [0.5, 0.0025])
+def test_each_signal_of_labview_has_the_times_before_it(shift, tmp_path):
+    """X_Columns Multi: two columns are called X_Value, those of the force are later."""
+    rows = [
+        f'{0.01 * at:.4f}\t{90.0 * math.sin(at / 40):.4f}\t{0.01 * at + shift:.4f}\t{-900 - at}'
+        for at in range(400)
+    ]
+    head = ['LabVIEW Measurement', 'Separator\tTab', 'X_Columns\tMulti', '***End_of_Header***']
+    names = 'X_Value\tX speed [mm/s]\tX_Value\tX force [N]\tComment'
+    path = tmp_path / 'log.lvm'
+    path.write_text('\n'.join([*head, names, *rows]))
+    content = guess(path).content
+    assert content['time'] == {'column': 'X_Value', 'unit': 's'}
+    assert content['axes']['x']['load']['time'] == 'X_Value_duplicated_0'

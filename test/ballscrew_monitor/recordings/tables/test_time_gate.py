@@ -136,6 +136,13 @@ def test_milliseconds_without_leading_zeros_are_no_time(read, refused):
     refused('no_zeros', read, times)
 
 
+@pytest.mark.parametrize('period', [40, 50, 80])
+def test_milliseconds_without_leading_zeros_are_no_time_at_slow_rates(period, read, refused):
+    """Few rows of a second are late then, fewer than those of a run."""
+    stamps = [divmod(period * row, 1000) for row in range(200)]
+    refused('no_zeros', read, [f'2026-01-02 11:59:{50 + s:02}.{part}' for s, part in stamps])
+
+
 def test_more_than_ten_years_are_refused(read, refused):
     steps = np.arange(500.0)
     steps[-1] = 10 * YEAR
