@@ -369,6 +369,17 @@ def report(rows: Sequence[Marched]) -> Iterator[str]:
                 f'{math.exp(off.mean()):.2f}, rms {100 * math.sqrt(np.mean(off**2)):.1f} %, '
                 f'{int((np.abs(off) < math.log(band)).sum())} within {band:g}'
             )
+        inside, count = told_by_others([strip for strip in strips if strip.lay == lay])
+        yield f'all held out, {lay}, by the bands of the other raceways: {inside} of {count}'
+
+
+def told_by_others(strips: Sequence[HeldOut]) -> tuple[int, int]:
+    """Return how many strips lie in bands given by those of other raceways, and of how many."""
+    inside = 0
+    for strip in strips:
+        others = [other.miss for other in strips if other.raceway != strip.raceway]
+        inside += abs(strip.miss) <= math.log(nine_of_ten(others))
+    return inside, len(strips)
 
 
 def main() -> None:
