@@ -48,6 +48,7 @@ OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 """Units of signals of a data recorder, which its file does not state."""
 OF_LISTS = 'its cells are lists'
 CYCLE, COUNTERS = 'CycleTimeMs', ('CYCLE', 'HFProbeCounter')
+"""Key of the time of a cycle, and signals that count cycles."""
 Content = Any
 
 

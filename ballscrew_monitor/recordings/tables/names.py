@@ -518,7 +518,8 @@ def _unit_of_map(one: Named) -> str:
     units = UNITS[one.doubtful]
     if RATED in units and OF_RATED.search(unknown_unit(one.column, one.doubtful)):
         return f"'{RATED}', scale: ...}}, torque_rated_Nm: ..."
-    return f'{next(iter(units))}, scale: ...}}'
+    shifted = ', offset: ...' * (one.doubtful == 'temperature')
+    return f'{next(iter(units))}, scale: ...{shifted}}}'
 
 
 def told_by_words(named: Sequence[Named]) -> list[str]:

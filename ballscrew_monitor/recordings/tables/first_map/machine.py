@@ -42,11 +42,27 @@ def state_machine(draft: Draft, name: str) -> None:
     if 'torque' in used and draft.unit(name, 'torque') == RATED:
         _state_motor(draft, name, 'torque')
     if 'temperature' not in used:
-        why = 'no column is the oil temperature of this axis'
-        _set_by_head(draft, name, 'temperature_degC', TEMPERATURE, why)
+        _set_temperature(draft, name)
     elif not names.is_of_the_screw(used['temperature']['column']):
         column = used['temperature'].pop('column')
         draft.assume(f'{name}.temperature.column', column, 'taken for that of the oil')
+
+
+def _set_temperature(draft: Draft, name: str) -> None:
+    """Ask for the temperature of the oil if a column has it in an unknown unit, else assume it."""
+    axes = {'', *(one.axis for one in draft.log.axes[name].values())}
+    for one in draft.log.named:
+        if (
+            one.doubtful == 'temperature'
+            and one.axis in axes
+            and names.is_of_the_screw(one.column)
+        ):
+            unit = unknown_unit(one.column, one.doubtful)
+            told = f'{short(one.column)} is in {short(unit)}, which is no unit of a temperature'
+            draft.ask(f'{name}.temperature_degC', f', or its column: {told}')
+            return
+    why = 'no column is the oil temperature of this axis'
+    _set_by_head(draft, name, 'temperature_degC', TEMPERATURE, why)
 
 
 def _statement(draft: Draft, key: str) -> str:

@@ -1107,3 +1107,13 @@ def test_each_signal_of_labview_has_the_times_before_it(shift, tmp_path):
     content = guess(path).content
     assert content['time'] == {'column': 'X_Value', 'unit': 's'}
     assert content['axes']['x']['load']['time'] == 'X_Value_duplicated_0'
+
+
+def test_an_oil_temperature_in_an_unknown_unit_is_asked_for(guessed, says):
+    """176 degF are 80 degC, which is not the usual 40 degC."""
+    log = {'t_s': TIME, 'x_vel_mm_s': SPEED, 'Oil temperature [°F]': 176.0 + 0.1 * TIME}
+    made = guessed(log)
+    assert says('temperature_in_degF') in made.unstated
+    assert 'x.temperature_degC' not in made.content['assumed']
+    log = {'t_s': TIME, 'x_vel_mm_s': SPEED, 'Motor temperature [°F]': 176.0 + 0.1 * TIME}
+    assert guessed(log).content['assumed']['x.temperature_degC']['value'] == 40.0
