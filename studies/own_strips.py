@@ -172,12 +172,12 @@ def raceways(rows: Sequence[Strip]) -> dict[int, dict[str, Strip]]:
     }
 
 
-def within(rows: Sequence[Strip], lay: str) -> tuple[float, int]:
+def within(rows: Sequence[Strip], lay: str, states: Sequence[str]) -> tuple[float, int]:
     """Return the pooled deviation of coarse strips of a raceway in logarithms [-], and strips."""
     logs = [
         np.log([row.film_factor for row in strips.values() if row.strip != FINER])
-        for strips in raceways(rows).values()
-        if next(iter(strips.values())).lay == lay
+        for number, strips in raceways(rows).items()
+        if OWN[number].lay == lay and OWN[number].state in states
     ]
     several = [values for values in logs if values.size > 1]
     squares = sum(values.size * values.var() for values in several)
@@ -190,7 +190,8 @@ def held_out(strips: Mapping[str, Strip], name: str) -> tuple[float, float] | No
     others = {
         other: {'film_factor': row.film_factor} for other, row in strips.items() if other != name
     }
-    known = marched_film(others, cast('Lay', next(iter(strips.values())).lay))
+    own = OWN[next(iter(strips.values())).own]
+    known = marched_film(others, cast('Lay', own.lay), cast('State', own.state))
     if name not in strips or not known:
         return None
     off = math.log(strips[name].film_factor / known['marched_film'])
@@ -208,15 +209,17 @@ def report(rows: Sequence[Strip]) -> Iterator[str]:
         seconds = sum(row.seconds for row in strips.values())
         yield f'{1 + number} {OWN[number].lay} {OWN[number].state}: {text}; {seconds:.0f} s'
     for lay in (ISO, LON, TRA):
-        scatter, count = within(rows, lay)
-        yield f'{lay}: deviation within a raceway {scatter:.3f} of {count} strips'
         for states in (('new', 'run_in'), ('new',), ('run_in',)):
             part = [
                 strips
                 for number, strips in screws.items()
                 if OWN[number].lay == lay and OWN[number].state in states
             ]
-            yield f'{lay}, {" and ".join(states)}: {", ".join(coverage(part))}'
+            scatter, count = within(rows, lay, states)
+            yield (
+                f'{lay}, {" and ".join(states)}: deviation within a raceway {scatter:.3f} of '
+                f'{count} strips, {", ".join(coverage(part))}'
+            )
 
 
 def coverage(part: Sequence[Mapping[str, Strip]]) -> Iterator[str]:

@@ -14,7 +14,7 @@ import numpy as np
 from surrogate.builder.closed_form import provenance
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain, WORK
-from surrogate.builder.full.march import march_task, march_tasks, marched_film, strips_apart
+from surrogate.builder.full.march import doubtful_strips, march_task, march_tasks, marched_film
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
@@ -96,7 +96,8 @@ def build_full_surface(
         tasks = march_tasks(screw, lubricant) if march else {}
         results = run.solve(march_task, tasks, 'strip') if tasks else {}
         strips = {name: result for name, result in results.items() if result}
-        marched = with_raceway(screw, **marched_film(strips, screw.roughness.lay))
+        sheet = screw.roughness
+        marched = with_raceway(screw, **marched_film(strips, sheet.lay, sheet.state))
         data = build_full(marched, lubricant, settings, run)
     if tasks:
         data = replace(data, header={**data.header, 'march': strips})
@@ -117,8 +118,7 @@ def shortfalls(data: SurfaceData) -> Iterator[str]:
     raceway, strips = data.header['inputs']['screw']['roughness'], data.header.get('march', {})
     if 'march' in data.header and raceway.get('marched_film') is None:
         yield 'too few strips show where contact begins: the law alone tells it'
-    elif apart := strips_apart(strips, raceway['lay']):
-        yield apart
+    yield from doubtful_strips(strips, raceway)
     reached = data.header['reached']
     if reached is None:
         yield 'accuracy is not known: no held-out point was solved'

@@ -35,9 +35,10 @@ class SpeedRamp:
     What a contact did while its speed changed.
 
     Entrainment speeds of the steps [m/s], central film of the smooth contact at each [m], share of
-    the load on punctured nodes, share that asperities carry and rolling loss over that of the
-    smooth contact, averages over the places [-]; steps of a transit; status, steps, those that did
-    not converge, wall time [s]. A march that ended early holds the steps that all places have.
+    the load on punctured nodes, share that asperities carry, rolling loss over that of the
+    smooth contact and share of converged steps, averages over the places [-]; steps of a
+    transit; status, steps, those that did not converge, wall time [s]. A march that ended early
+    holds the steps that all places have.
 
     """
 
@@ -47,6 +48,7 @@ class SpeedRamp:
     rcs: Array = field(default_factory=lambda: np.empty(0))
     asperity_share: Array = field(default_factory=lambda: np.empty(0))
     loss_factor: Array = field(default_factory=lambda: np.empty(0))
+    converged: Array = field(default_factory=lambda: np.empty(0))
     transit: float = math.nan
     steps: int = 0
     steps_failed: int = 0
@@ -66,6 +68,12 @@ class SpeedRamp:
         """Return the smooth central film [m] at an entrainment speed [m/s] of the ramp."""
         order = np.argsort(self.speeds)
         return float(np.interp(speed, self.speeds[order], self.central_films[order]))
+
+    def failed_share(self, speed: float, transits: float = 2.0) -> float:
+        """Return the share of steps about a speed [m/s] that failed, over a mean each way [-]."""
+        speeds, converged = self.means(transits, 'converged')
+        nearest = np.argsort(np.abs(np.log(speeds / speed)))[:2]
+        return float(1 - converged[nearest].mean())
 
     def onset(self, rcs: float = 0.01, transits: float = 2.0) -> float:
         """
@@ -177,6 +185,7 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
         rcs=_over_places(steps, 'rcs'),
         asperity_share=_over_places(steps, 'asperity_share'),
         loss_factor=_over_places(steps, 'rolling_loss') / losses,
+        converged=_over_places(steps, 'converged'),
         transit=_steps_of_transit(march),
         steps=march.steps,
         steps_failed=march.failed,

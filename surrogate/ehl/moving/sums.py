@@ -29,12 +29,13 @@ class Measure:
     """
     Numbers of one step, as in `MovingSolution`.
 
-    Entrainment speed [m/s], shares and traction [-], films [m], pressure [Pa], losses [N]; RCS
-    along the track per semi-axis [-].
+    Entrainment speed [m/s], whether the step converged, shares and traction [-], films [m],
+    pressure [Pa], losses [N]; RCS along the track per semi-axis [-].
 
     """
 
     speed: float
+    converged: bool
     rcs: float
     asperity_share: float
     mean_film: float
@@ -83,6 +84,7 @@ class Gauge:
         area = grid.dx * grid.dy * case.semi_axis_x**2
         return Measure(
             speed=step.speed,
+            converged=outcome.converged,
             rcs=grid.integral(touching) / case.load,
             asperity_share=grid.integral(outcome.state.asperity_pressure) / case.load,
             mean_film=float(gap[core].mean()) * unit,

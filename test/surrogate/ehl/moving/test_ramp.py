@@ -61,6 +61,17 @@ def test_means_keep_the_sum():
     assert factors == pytest.approx(1 + means)
 
 
+def test_failed_steps_count_where_the_onset_is():
+    """A mean of 20 steps on each side of it: five of these 40 fail, and many far away."""
+    converged = np.ones(400)
+    converged[190:195] = converged[300:] = 0.0
+    ramp = replace(column(lambda u: u), converged=converged)
+    middle = math.sqrt(ramp.speeds[199] * ramp.speeds[200])
+    assert ramp.failed_share(middle) == pytest.approx(5 / 40)
+    assert ramp.failed_share(0.1) == 0.0
+    assert ramp.failed_share(0.001) == 1.0
+
+
 def test_a_flat_strip_loses_what_a_smooth_one_does():
     """The loss factor is 1 all along but for the lag, which turns with the sense; no contact."""
     known = {'transits': 4.0, 'settings': SETTINGS}
@@ -72,6 +83,8 @@ def test_a_flat_strip_loses_what_a_smooth_one_does():
     for ramp in (down, up):
         assert ramp.loss_factor == pytest.approx(1.0, abs=0.03)
         assert ramp.rcs.max() == 0.0
+        assert ramp.converged.size == ramp.speeds.size
+        assert ramp.converged.all()
     assert down.loss_factor.mean() > 1 > up.loss_factor.mean()
     both = 0.5 * (down.loss_factor.mean() + up.loss_factor.mean())
     assert both == pytest.approx(1.0, abs=0.005)
