@@ -113,7 +113,7 @@ def page(record: Mapping[str, Any], *, verbose: bool = False) -> str:
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
         ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
         *drag_rows(record),
-        ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
+        ('regime', f'{record["regime"]} by Lambda {record["film_ratio"]:.2f}; RCS decides'),
         (
             'asperity wear',
             f'{1e-6 * record["asperity_pressure_Pa"]:.3g} MPa, '

@@ -98,7 +98,7 @@ def query_page(record: dict[str, Any]) -> str:
             *lines,
             f'  driving torque       {record["driving_torque_Nm"]:.4g} N m{driving}',
             *drag,
-            f'  regime               {record["regime"]}',
+            f'  regime               {record["regime"]} by the film ratio; RCS decides',
             f'  worst contact        {record["worst_contact"]}',
         ]
     )
