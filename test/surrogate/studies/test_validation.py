@@ -28,7 +28,10 @@ SHARES = (np.arange(20000) + 0.5) / 20000
 NUMBER = re.compile(r'\d+(?:\.\d+)?')
 
 
-QUICK = 'efficiency_with_drag', 'efficiency_of_load', 'efficiency_over_load', 'sealed_drag'
+QUICK = (
+    *('efficiency_with_drag', 'efficiency_of_load', 'efficiency_over_load', 'sealed_drag'),
+    *('drag_over_preload', 'drag_over_measured', 'stribeck_branches'),
+)
 """Comparisons whose numbers take a second."""
 
 
