@@ -91,11 +91,12 @@ def efficiency_over_load(case: Any) -> list[float]:
 
 def drag_over_preload(case: Any) -> list[float]:
     """Return the torque of the contacts under the middle preload over the mean of the ends [-]."""
+    place = case.lubricant, DRAG_SPEED * RPM, 0.0, case.temperature
+    screws = (replace(case.screw, preload=share * case.screw.preload) for share in PRELOADS)
     low, middle, high = (
-        _torques(replace(case.screw, preload=share * case.screw.preload), DRAG_SPEED, (0.0,))[0]
-        for share in PRELOADS
+        closed_form.solve(Contacts.of(screw), *place).friction_torque for screw in screws
     )
-    return [2 * middle / (low + high)]
+    return [float(2 * middle / (low + high))]
 
 
 def drag_over_measured(case: Any) -> list[float]:

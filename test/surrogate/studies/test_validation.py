@@ -30,7 +30,7 @@ NUMBER = re.compile(r'\d+(?:\.\d+)?')
 
 QUICK = (
     *('efficiency_with_drag', 'efficiency_of_load', 'efficiency_over_load', 'sealed_drag'),
-    *('drag_over_preload', 'drag_over_measured', 'stribeck_branches'),
+    'drag_over_measured',
 )
 """Comparisons whose numbers take a second."""
 

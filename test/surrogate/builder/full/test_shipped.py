@@ -41,7 +41,9 @@ def test_each_generic_size_has_a_surface_of_its_sheet(name, oil):
     data = read(find_surface('full', name, oil.name))
     strips, sheet = data.header['march'], load_screw(name)
     assert list(strips) == [FINER, 'strip 1', 'strip 2', 'strip 3']
-    marched = with_raceway(sheet, **marched_film(strips, sheet.roughness.lay))
+    marched = with_raceway(
+        sheet, **marched_film(strips, sheet.roughness.lay, sheet.roughness.state)
+    )
     assert marched != sheet
     assert data.header['inputs'] == {'screw': marched.stated(), 'lubricant': oil.stated()}
     assert not data.mask.any()
