@@ -69,6 +69,12 @@ def test_a_load_along_the_motion_is_negative_and_signs_agree(spectrum, motion):
     assert one.energy_measured > 0.0
 
 
+@pytest.mark.parametrize(('load', 'band'), [(1e9, 24), (-1e9, -24), (50.0, 0)])
+def test_a_load_beyond_the_last_band_is_counted_in_it(spectrum, motion, load, band):
+    (found,) = spectrum(motion.steady(1.01, -40.0, load=load))
+    assert (found.load_band, found.time) == (band, pytest.approx(1.0))
+
+
 def test_what_is_not_known_is_in_no_energy_and_no_motion_is_lost(spectrum, motion):
     rows = motion.steady(8.01)
     rows['axial_load_source'][:200] = DERIVED
