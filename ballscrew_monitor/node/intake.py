@@ -211,7 +211,11 @@ class Intake(Waitable):
         self._places = [
             wait_set.add_subscription(topic.subscription.handle) for topic in self._awaited
         ]
-        self._handlers = [each for each in self._handlers if _is_added(each, wait_set)]
+        handlers, self._handlers = self._handlers, []
+        for handler in handlers:
+            with contextlib.suppress(InvalidHandle):  # another thread has destroyed it
+                handler.add_to_wait_set(wait_set)
+                self._handlers.append(handler)
 
     def is_ready(self, wait_set: Any) -> bool:
         """Return True if anything has come."""
@@ -473,15 +477,6 @@ class Intake(Waitable):
             if isinstance(event, InputSample) or event.why is Why.SEVERAL:
                 arrival.topic.count((axis.name, event.source), arrival.number, now)
         return events
-
-
-def _is_added(handler: EventHandler, wait_set: Any) -> bool:
-    """Let a wait set wait for a handler; return False if another thread has destroyed it."""
-    try:
-        handler.add_to_wait_set(wait_set)
-    except InvalidHandle:
-        return False
-    return True
 
 
 def _events(

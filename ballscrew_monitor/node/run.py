@@ -34,7 +34,17 @@ POLL = 0.2  # [s] longest wait before a signal is noticed
 def run(args: list[str] | None, stop: Sequence[int]) -> int:
     """Run the node until `stop` holds a signal; return 0, or 2 after bad input."""
     try:
-        node = _make_node(args)
+        local = wants_localhost(sys.argv[1:] if args is None else args)
+        if local:  # before any of the middleware is there
+            middleware.stay_local()
+        # The handlers of rclpy tear the context down while the executor still waits on it.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        node = BallscrewMonitor()
+        if node.get_parameter('localhost').value is not local:
+            raise InputError(
+                'parameter localhost is found in another place than the one that ROS takes it '
+                'from: state it for the full name of the node, or as -p localhost:=true'
+            )
     except (InputError, ParameterException, RuntimeError) as error:
         print(f'{parameters.NODE_NAME}: {parameters.explain(error)}', file=sys.stderr)
         rclpy.try_shutdown()
@@ -53,22 +63,6 @@ def run(args: list[str] | None, stop: Sequence[int]) -> int:
     return 0
 
 
-def _make_node(args: list[str] | None) -> BallscrewMonitor:
-    """Return the node; what `localhost` asks for is done before any of the middleware is."""
-    local = wants_localhost(sys.argv[1:] if args is None else args)
-    if local:
-        middleware.stay_local()
-    # The handlers of rclpy tear the context down while the executor still waits on it.
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    node = BallscrewMonitor()
-    if node.get_parameter('localhost').value is not local:
-        raise InputError(
-            'parameter localhost is found in another place than the one that ROS takes it from: '
-            'state it for the full name of the node, or as -p localhost:=true'
-        )
-    return node
-
-
 def _end(node: BallscrewMonitor, executor: SingleThreadedExecutor) -> None:
     node.finish()
     for _ in range(MOST_SOLVES):  # the goals that this has ended are answered
@@ -80,8 +74,24 @@ def _end(node: BallscrewMonitor, executor: SingleThreadedExecutor) -> None:
 
 def wants_localhost(arguments: Sequence[str]) -> bool:
     """Return True if the arguments of the node set `localhost`; the last one counts."""
-    given = list(_ros_arguments(arguments))
-    node = _full_name(value for kind, value in given if kind == '-r')
+    given: list[tuple[str, str]] = []  # kind and value of those between `--ros-args` and `--`
+    inside, kind = False, ''
+    for argument in arguments:
+        if kind:
+            given.append((kind, argument))
+            kind = ''
+        elif argument in ('--ros-args', '--'):
+            inside = argument == '--ros-args'
+        elif inside:
+            kind = _TAKES_VALUE.get(argument, '')
+    names: dict[str, str] = {}  # of two rules the first one counts
+    for rule in (value for kind, value in given if kind == '-r'):
+        place, _, value = rule.partition(':=')
+        key = place.rpartition(':')[2]
+        names.setdefault('__node' if key == '__name' else key, value)
+    namespace = names.get('__ns', '').strip('/')
+    name = names.get('__node', parameters.NODE_NAME)
+    node = f'/{namespace}/{name}' if namespace else f'/{name}'
     wanted = False
     for kind, value in given:
         setting = _of_file(value, node) if kind == 'file' else {}
@@ -89,31 +99,6 @@ def wants_localhost(arguments: Sequence[str]) -> bool:
             setting = _of_rule(value, node)
         wanted = bool(setting.get(NAME, wanted))
     return wanted
-
-
-def _ros_arguments(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield kind and value of the arguments between `--ros-args` and `--`."""
-    inside, kind = False, ''
-    for argument in arguments:
-        if kind:
-            yield kind, argument
-            kind = ''
-        elif argument in ('--ros-args', '--'):
-            inside = argument == '--ros-args'
-        elif inside:
-            kind = _TAKES_VALUE.get(argument, '')
-
-
-def _full_name(remaps: Iterator[str]) -> str:
-    """Return the full name of the node; of two rules the first one counts."""
-    names: dict[str, str] = {}
-    for rule in remaps:
-        place, _, value = rule.partition(':=')
-        key = place.rpartition(':')[2]
-        names.setdefault('__node' if key == '__name' else key, value)
-    namespace = names.get('__ns', '').strip('/')
-    name = names.get('__node', parameters.NODE_NAME)
-    return f'/{namespace}/{name}' if namespace else f'/{name}'
 
 
 def _of_rule(rule: str, node: str) -> dict[str, Any]:

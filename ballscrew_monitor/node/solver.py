@@ -125,7 +125,14 @@ class Solver:
             job.end = End.CANCELLED
         self._waiting = deque(job for job in self._waiting if job.end is None)
         if self._job is not None:
-            done += self._listen(self._job, now) or self._overdue(self._job, now)
+            job = self._job
+            ended = self._listen(job, now)
+            if not ended and (now - job.cancelled >= GRACE or now - job.began >= job.timeout):
+                self._pool.kill(self._name)  # it was taken back and did not stop, or is late
+                part = 100 * job.step.fraction
+                text = f'stopped after its timeout of {job.timeout:g} s, {part:.0f} % done'
+                ended = self._end(job, now, {'sentence': text})
+            done += ended
         if self._job is None and self._waiting:
             self._job = self._waiting.popleft()
             self._job.began, self._job.step = now, Step(stage='starting')
@@ -161,15 +168,6 @@ class Solver:
         else:
             job.end, job.sentence = End.FAILED, frame['sentence']
         return [job]
-
-    def _overdue(self, job: Job, now: float) -> list[Job]:
-        """End a solve that was taken back and did not stop, or that takes too long."""
-        if not (now - job.cancelled >= GRACE or now - job.began >= job.timeout):
-            return []
-        self._pool.kill(self._name)
-        part = 100 * job.step.fraction
-        text = f'stopped after its timeout of {job.timeout:g} s, {part:.0f} % done'
-        return self._end(job, now, {'sentence': text})
 
 
 def step_of(frame: dict[str, Any], spent: float) -> Step:
