@@ -103,40 +103,30 @@ class AxisRun:
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
         begins = {*np.flatnonzero(events['kind'] == records.RUN).tolist()}
-        back = {*self._set_back(events)} if self._parted else set()
+        back = set[int]()
+        if self._parted:  # samples of the speed at which a clock was set back
+            is_speed = (events['kind'] == records.SAMPLE) & (events['source'] == Source.SPEED)
+            places = np.flatnonzero(is_speed)
+            stamps = events['stamp'][places]
+            last = self._last_stamp if len(self._last_stamp) else stamps[:1]
+            before = np.concatenate([last, stamps])
+            self._last_stamp = before[-1:]
+            back = {*places[before[:-1] - stamps > BACKWARD_JUMP].tolist()}
         for begin, end in itertools.pairwise([*sorted({0} | begins | back), len(events)]):
-            some_events = events[begin:end]
-            if begin in begins:
-                self._begin_run(some_events[:1])
-            elif begin in back:  # which the judge sees itself
+            some_events, monitor = events[begin:end], self.axis.monitor
+            active = begin in begins and monitor.memory.event_active
+            if begin in begins or begin in back:
                 self._runs.append(self._run())
-                self._begun, self._span = self.axis.monitor.memory, [0, 0]
+                if begin in begins:  # a clock that was set back the judge sees itself
+                    for _ in self._judge.judge(some_events[:1]):  # which gives no row
+                        pass
+                self._begun, self._span = monitor.memory, [0, 0]
+            if active:  # what is outside ends with its run
+                monitor.ending = RUN_ENDED
+                self._ended = out_of_zone_message(monitor, shelved=False)
+                self._note(int(monitor.memory.event_stamp))
             for part in self._take(some_events, states=states):
                 yield part if isinstance(part, AxisRows) else (begin + part[0], part[1])
-
-    def _begin_run(self, events: Events) -> None:
-        """Let the run end, and with it what is outside; `events` hold the begin of the next."""
-        monitor = self.axis.monitor
-        active = monitor.memory.event_active
-        self._runs.append(self._run())
-        for _ in self._judge.judge(events):  # which gives no row
-            pass
-        self._begun, self._span = monitor.memory, [0, 0]
-        if active:
-            monitor.ending = RUN_ENDED
-            self._ended = out_of_zone_message(monitor, shelved=False)
-            self._note(int(monitor.memory.event_stamp))
-
-    def _set_back(self, events: Events) -> Iterator[int]:
-        """Yield the places of samples of the speed at which a clock was set back."""
-        is_speed = (events['kind'] == records.SAMPLE) & (events['source'] == Source.SPEED)
-        places = np.flatnonzero(is_speed)
-        stamps = events['stamp'][places]
-        before = np.concatenate(
-            [self._last_stamp if len(self._last_stamp) else stamps[:1], stamps]
-        )
-        self._last_stamp = before[-1:]
-        yield from places[before[:-1] - stamps > BACKWARD_JUMP].tolist()
 
     def _take(self, events: Events, *, states: bool) -> Iterator[AxisRows | Due]:
         """Judge events of one run as `take` does."""

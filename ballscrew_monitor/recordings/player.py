@@ -346,7 +346,14 @@ def playback(
             say(*notes)
             player = Player(node, bag, rate=rate, topics=topics)
             # What a monitor said when the bag was recorded tells nothing of those of now.
-            known = {} if every or wanted is not None else _topics_by_input(params)
+            known: dict[tuple[str, str], str] = {}
+            if not every and wanted is None:
+                values = parameters.read_file(params)
+                known = {
+                    (axis, source): absolute(values[f'{axis}.{source}.topic'])
+                    for axis in values['axes']
+                    for source in (one.name.lower() for one in Source)
+                }
             following = None if DIAGNOSTICS in topics else Following(node, known)
             code = _play(player, topics, patience, stop, loop, following)
             say(*(note for note in bag.notes if note not in notes))
@@ -373,15 +380,6 @@ def chosen(
     if missing:
         print(printable(f'the bag holds no {", ".join(missing)}'), flush=True)
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
-
-
-def _topics_by_input(params: Path) -> dict[tuple[str, str], str]:
-    values = parameters.read_file(params)
-    return {
-        (axis, source): absolute(values[f'{axis}.{source}.topic'])
-        for axis in values['axes']
-        for source in (one.name.lower() for one in Source)
-    }
 
 
 def playable(bag: Bag, topics: Sequence[str]) -> list[str]:

@@ -64,32 +64,30 @@ class Recorder:
         """
         self._node, self._writer, self._clock = node, writer, clock
         listeners = listeners or {}
-        self._subscriptions = [
-            self._subscribe(topic, listeners.get(topic.name)) for topic in topics
-        ]
+        self._subscriptions: list[Any] = []
+        for topic in topics:
+            writer.add_topic(topic)
+            reliability, durability, _ = topic.offer.value
+            all_that_is_offered = QoSProfile(
+                history=QoSHistoryPolicy.KEEP_LAST,
+                depth=DEPTH,
+                reliability=getattr(QoSReliabilityPolicy, reliability.upper()),
+                durability=getattr(QoSDurabilityPolicy, durability.upper()),
+            )
+            subscription = node.create_subscription(
+                message_class(topic.type_name),
+                topic.name,
+                functools.partial(self._on_message, topic.name, listeners.get(topic.name)),
+                all_that_is_offered,
+                raw=True,
+            )
+            self._subscriptions.append(subscription)
 
     def close(self) -> None:
         """Stop to record; the bag is left to its owner."""
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
         self._subscriptions = []
-
-    def _subscribe(self, topic: Topic, listener: Callable[[bytes], None] | None) -> Any:
-        self._writer.add_topic(topic)
-        reliability, durability, _ = topic.offer.value
-        all_that_is_offered = QoSProfile(
-            history=QoSHistoryPolicy.KEEP_LAST,
-            depth=DEPTH,
-            reliability=getattr(QoSReliabilityPolicy, reliability.upper()),
-            durability=getattr(QoSDurabilityPolicy, durability.upper()),
-        )
-        return self._node.create_subscription(
-            message_class(topic.type_name),
-            topic.name,
-            functools.partial(self._on_message, topic.name, listener),
-            all_that_is_offered,
-            raw=True,
-        )
 
     def _on_message(
         self, topic: str, listener: Callable[[bytes], None] | None, data: bytes

@@ -43,7 +43,14 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     InputError when there is nothing to be had.
 
     """
-    file = _unfinished(path) if path.is_dir() else path
+    file = path
+    if path.is_dir():
+        files = sorted(path.glob(f'*{SUFFIX}{ACTIVE}'))
+        if not files and (stored := sorted(path.glob('*.db3'))):
+            raise InputError(OTHERS['sqlite3'].format(file=stored[0]))
+        if len(files) != 1:
+            raise InputError(f'{path} holds {len(files)} unfinished recordings, it must be one')
+        file = files[0]
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
     kind = kind_of(file)
@@ -68,15 +75,6 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
         _copy(file, topics, writer)
     return target, writer.total, (writer.last - writer.first) * 1e-9, lost
-
-
-def _unfinished(folder: Path) -> Path:
-    files = sorted(folder.glob(f'*{SUFFIX}{ACTIVE}'))
-    if not files and (stored := sorted(folder.glob('*.db3'))):
-        raise InputError(OTHERS['sqlite3'].format(file=stored[0]))
-    if len(files) != 1:
-        raise InputError(f'{folder} holds {len(files)} unfinished recordings, it must be one')
-    return files[0]
 
 
 def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:
@@ -106,7 +104,11 @@ def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:
 def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
     for channel, schema in topics.values():
         metadata = channel.metadata
-        profiles = _profiles(metadata.get('offered_qos_profiles', ''))
+        profiles: list[dict[str, Any]] = []
+        with contextlib.suppress(InputError):
+            stated = plain_values(metadata.get('offered_qos_profiles', ''))
+            if isinstance(stated, list) and all(isinstance(one, dict) for one in stated):
+                profiles = stated
         kind = metadata.get('topic_type_hash', '')
         names = channel.topic, schema.name
         writer.announce(*names, schema.data, type_hash=kind, profiles=profiles)
@@ -123,11 +125,3 @@ def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWrit
                 publish_time=message.publish_time,
                 sequence=message.sequence,
             )
-
-
-def _profiles(text: str) -> list[dict[str, Any]]:
-    with contextlib.suppress(InputError):
-        profiles = plain_values(text)
-        if isinstance(profiles, list) and all(isinstance(profile, dict) for profile in profiles):
-            return profiles
-    return []

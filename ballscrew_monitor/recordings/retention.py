@@ -177,7 +177,14 @@ class Retention:
             if self._writer is not None:
                 self._writer.add_topic(topic)
         elif frame.kind is FrameKind.TRIGGER:
-            self._trigger(frame, now)
+            if self._segments and not self._settings.always:
+                self._until = now + self._settings.after
+                if self._writer is None:
+                    self._forget(now)
+                    self._open(self._segments[0].frames[0].log_time, now)
+                    for kept in [old for segment in self._segments for old in segment.frames]:
+                        self._write(kept)
+                    self._size = 0  # of what is to come
         elif frame.kind is FrameKind.MESSAGE:
             self._keep(frame, now)
         else:
@@ -226,17 +233,6 @@ class Retention:
             or sum(segment.size for segment in segments) > MOST_RING
         ):
             segments.popleft()
-
-    def _trigger(self, frame: Frame, now: float) -> None:
-        if self._settings.always or not self._segments:
-            return
-        self._until = now + self._settings.after
-        if self._writer is None:
-            self._forget(now)
-            self._open(self._segments[0].frames[0].log_time, now)
-            for kept in [old for segment in self._segments for old in segment.frames]:
-                self._write(kept)
-            self._size = 0  # of what is to come
 
     def _open(self, log_time: int, now: float) -> None:
         self._make_room()

@@ -132,7 +132,19 @@ def _merged(file: Path, journals: list[Path], folder: Path) -> tuple[Path, list[
     Raises InputError if they cannot be copied, or if SQLite cannot read them.
 
     """
-    copy = _copied(file, journals, folder)
+    parts, before = [file.resolve(), *journals], file.stat().st_mtime_ns
+    size, free = sum(map(size_of, parts)), shutil.disk_usage(folder).free
+    if 2 * size > free:
+        raise InputError(
+            f'bag {file} is read from a copy with its journal of {size / limits.MEGA:.0f} MB, '
+            f'allowed is half of the free disk, {free / 2 / limits.MEGA:.0f} MB'
+        )
+    copy = folder / parts[0].name
+    with storages.damage_is_input(file):
+        for path in parts:
+            shutil.copyfile(path, folder / path.name)
+        if file.stat().st_mtime_ns != before:  # the log is of another state of the file
+            raise InputError(f'bag {file} is being written, it can be read once that has ended')
     log, rollback = (copy.with_name(copy.name + ending) for ending in (LOG, ROLLBACK))
     written, remarks = _written_pages(log), _rolled_back(file, rollback)
     try:
@@ -149,23 +161,6 @@ def _merged(file: Path, journals: list[Path], folder: Path) -> tuple[Path, list[
             'finished: they are left out, and the messages in them'
         )
     return copy, remarks
-
-
-def _copied(file: Path, journals: list[Path], folder: Path) -> Path:
-    parts, before = [file.resolve(), *journals], file.stat().st_mtime_ns
-    size, free = sum(map(size_of, parts)), shutil.disk_usage(folder).free
-    if 2 * size > free:
-        raise InputError(
-            f'bag {file} is read from a copy with its journal of {size / limits.MEGA:.0f} MB, '
-            f'allowed is half of the free disk, {free / 2 / limits.MEGA:.0f} MB'
-        )
-    copies = [folder / path.name for path in parts]
-    with storages.damage_is_input(file):
-        for path, copy in zip(parts, copies, strict=True):
-            shutil.copyfile(path, copy)
-        if file.stat().st_mtime_ns != before:  # the log is of another state of the file
-            raise InputError(f'bag {file} is being written, it can be read once that has ended')
-    return copies[0]
 
 
 def _written_pages(log: Path) -> int:

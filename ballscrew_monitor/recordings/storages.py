@@ -237,12 +237,11 @@ class McapStorage(Storage):
 
     def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         """Yield the messages of a file that is read from its begin, by log time if wanted so."""
-        messages = (message for message in self._up_to_damage() if message.topic in wanted)
-        return by_log_time(messages) if reorder else messages
-
-    def _up_to_damage(self) -> Iterator[Message]:
+        if reorder:
+            yield from by_log_time(self._whole(wanted, reorder=False))
+            return
         try:
-            yield from self._written()
+            yield from (message for message in self._written() if message.topic in wanted)
         except RecordDamage as damage:
             if self.is_indexed:
                 raise InputError(self._damaged(str(damage))) from None

@@ -181,17 +181,31 @@ class Summary:
 
     def lines(self) -> list[str]:
         """Return the summary in words."""
-        no_events = 'none, for no motion was judged' if self.says_nothing else 'none'
-        return [
+        lines = [
             f'in motion   {self.running_time:.1f} s of {self.recorded:.1f} s, '
             f'{self.revolutions:.0f} revolutions, '
             f'{number(self.energy_lost, 4)} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
-            *self._run_lines(),
-            f'events      {len(self.events) or no_events}',
-            *(self._event_line(event) for event in self.events),
         ]
+        if self.runs:
+            lines.append(f'runs        {len(self.runs)}, each judged apart')
+        for run in self.runs:
+            begin, end = self.since_first(run.first), self.since_first(run.last)
+            span = f'{begin:5.1f} s to {end:5.1f} s  ' if run.first else ''
+            lines.append(f'  {run.number:2d}  {span}{run.words}')
+        no_events = 'none, for no motion was judged' if self.says_nothing else 'none'
+        lines.append(f'events      {len(self.events) or no_events}')
+        for event in self.events:
+            until = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
+            place = f' at {event.place}' if event.place else ''
+            advice = f'{":" if place else ";"} {event.advice}' if event.advice else ''
+            lines.append(
+                f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {until}  '
+                f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
+                f'worst {event.shown(event.worst_value)}{place}{advice}'
+            )
+        return lines
 
     def _shares(self, *names: str) -> str:
         parts = []
@@ -199,30 +213,6 @@ class Summary:
             time = getattr(self, f'{name}_time')
             parts.append(f'{name} {time:.1f} s ({share(time, self.running_time)})')
         return ', '.join(parts)
-
-    def _run_lines(self) -> list[str]:
-        if not self.runs:
-            return []
-        return [
-            f'runs        {len(self.runs)}, each judged apart',
-            *(
-                f'  {run.number:2d}  {self.since_first(run.first):5.1f} s to '
-                f'{self.since_first(run.last):5.1f} s  {run.words}'
-                if run.first
-                else f'  {run.number:2d}  {run.words}'
-                for run in self.runs
-            ),
-        ]
-
-    def _event_line(self, event: EventRecord) -> str:
-        end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
-        place = f' at {event.place}' if event.place else ''
-        advice = f'{":" if place else ";"} {event.advice}' if event.advice else ''
-        return (
-            f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
-            f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
-            f'worst {event.shown(event.worst_value)}{place}{advice}'
-        )
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

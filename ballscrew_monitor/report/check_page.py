@@ -90,6 +90,14 @@ def check_parts(
 
     """
     sentences = (step if step.endswith('?') else f'{step}.' for step in steps)
+    friction = [
+        part
+        for run in runs
+        for part in (element('h3', f'Axis {run.axis}, from {run.log}'), element('pre', run.text))
+    ]
+    if not runs:
+        text = 'Not identified: no recording is a free run with a motor torque.'
+        friction.append(element('p', text))
     return [
         element('h2', 'What to do next, and what to record'),
         element('ul', *(element('li', sentence) for sentence in sentences)),
@@ -101,7 +109,7 @@ def check_parts(
         *(element('p', f'{aside}.') for aside in asides),
         *(element('p', f'Note: {note}.', class_='hint') for note in notes_of(logs)),
         element('h2', 'Friction beside the contacts'),
-        *_friction(runs),
+        *friction,
         element('h2', 'Surfaces'),
         *_surfaces(surfaces),
         element('h2', 'Zone and health'),
@@ -179,14 +187,6 @@ def _rows(logs: Sequence[CheckedLog]) -> Iterator[TableRow]:
                 TableCell(str(count), kind='number') for count in (line.expected, line.judged)
             )
             yield TableRow((name, line.axis, *counts, line.losses or NONE, where))
-
-
-def _friction(runs: Sequence[FreeRun]) -> Iterator[Markup]:
-    for run in runs:
-        yield element('h3', f'Axis {run.axis}, from {run.log}')
-        yield element('pre', run.text)
-    if not runs:
-        yield element('p', 'Not identified: no recording is a free run with a motor torque.')
 
 
 def _surfaces(surfaces: Mapping[str, str]) -> Iterator[Markup]:

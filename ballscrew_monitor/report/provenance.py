@@ -110,10 +110,17 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
         f'RCS below {limits.rcs:g}, efficiency from {100 * limits.efficiency:g} %, '
         f'judged from {limits.light_load:.4g} N and {limits.standstill_speed:g} rad/s on'
     )
+    used, lead = case.surface.lead, case.facts.lead
+    is_other = not (math.isnan(lead) or math.isclose(lead, used, rel_tol=1e-6))
+    length = f'{MILLI * (lead if is_other else used):g} mm'
+    leads = [('Lead', length, _stated(case, 'lead_mm'))]
+    if is_other:
+        text = f'{MILLI * used:g} mm, not that of the axis: build the surface of this screw'
+        leads.append(('Lead of the surface', text, 'contradiction'))
     facts = [
         ('Model', TIERS.get(surface.tier, surface.tier), _stated(case, 'surface')),
         ('Screw', surface.screw_name, _stated(case, 'screw')),
-        *_leads(case),
+        *leads,
         ('Preload', f'{surface.preload:g} N', _stated(case, 'screw')),
         ('Oil', surface.oil_name, _stated(case, 'oil')),
         *conditions,
@@ -141,18 +148,6 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
 def _stated(case: AxisCase, key: str) -> str:
     unsaid = case.nominal or key in case.facts.assumed or key in case.facts.defaulted
     return 'assumed' if unsaid else 'stated'
-
-
-def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
-    """Return the lead, and that of the surface where it is another."""
-    used, known = case.surface.lead, _stated(case, 'lead_mm')
-    if math.isnan(case.facts.lead) or math.isclose(case.facts.lead, used, rel_tol=1e-6):
-        return [('Lead', f'{MILLI * used:g} mm', known)]
-    text = f'{MILLI * used:g} mm, not that of the axis: build the surface of this screw'
-    return [
-        ('Lead', f'{MILLI * case.facts.lead:g} mm', known),
-        ('Lead of the surface', text, 'contradiction'),
-    ]
 
 
 def torque_part(case: AxisCase) -> Markup:

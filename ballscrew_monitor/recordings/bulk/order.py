@@ -127,7 +127,15 @@ class EventOrder:
         keys = _keys_of(events).some(arrival)
         leaving: list[Integers] = []
         waiting, begin = np.arange(before), before
-        for cut in [*(before + cut for cut in self._cuts(keys.some(slice(before, None)))), None]:
+        arrived, cuts = keys.some(slice(before, None)), set[int]()
+        # Where a clock is set back, what came before leaves before the new time line.
+        for line in set(np.unique(arrived.line).tolist()) - {-1}:
+            at = np.flatnonzero(arrived.line == line)
+            stamp = arrived.stamp[at]
+            last = np.concatenate([[self._last.get(line, stamp[0])], stamp[:-1]])
+            cuts.update((before + at[last - stamp > BACKWARD_JUMP]).tolist())
+            self._last[line] = int(stamp[-1])
+        for cut in [*sorted(cuts), None]:
             end = len(arrival) if cut is None else cut
             present = np.concatenate([waiting, np.arange(begin, end)])
             order, ready = self._order(keys.some(present), len(waiting))
@@ -150,17 +158,6 @@ class EventOrder:
         if len(leaving.stamp):
             last = int(leaving.stamp.max())
             self._past = max(self._past, (last, int(leaving.source[leaving.stamp == last].max())))
-
-    def _cuts(self, arrived: _Keys) -> list[int]:
-        """Return where a clock is set back: what comes before the new time line comes before."""
-        cuts = []
-        for line in set(np.unique(arrived.line).tolist()) - {-1}:
-            at = np.flatnonzero(arrived.line == line)
-            stamp = arrived.stamp[at]
-            before = np.concatenate([[self._last.get(line, stamp[0])], stamp[:-1]])
-            cuts += at[before - stamp > BACKWARD_JUMP].tolist()
-            self._last[line] = int(stamp[-1])
-        return sorted(set(cuts))
 
     def _order(self, keys: _Keys, before: int) -> tuple[Integers, int]:
         """Return the places of the events by stamp, and how many of them are ready."""

@@ -77,24 +77,19 @@ def _end(times: Integers) -> int:
 
 def check_rising(bag: Bag, times: WrittenTimes, topics: Collection[str]) -> None:
     """Raise InputError if log times go back; `times` has those of a bag that is read by chunks."""
-    falls = [*times.falls(), *_falls_of_messages(bag, topics)]
+    falls = [*times.falls()]
+    if not all(isinstance(one, McapStorage) and one.is_indexed for one in bag.storages):
+        courses: dict[str, _Course] = {}
+        for message in bag.as_written(topics):
+            course = courses.setdefault(message.topic, _Course())
+            if fall := course.fall(message.log_time, message.log_time):
+                falls.append((message.topic, *fall))
     if falls:
         topic, to, latest = falls[0]
         count = sum(name == topic for name, *_ in falls)
-        fall, after = seconds(latest - to), seconds(latest - bag.start_time)
+        back, after = seconds(latest - to), seconds(latest - bag.start_time)
         raise InputError(
             f'bag {bag.path}: the log times of {topic} go back {counted(count, "time")}, '
-            f'first by {fall:.4g} s after {after:.4g} s: its runs cannot be told apart, record '
+            f'first by {back:.4g} s after {after:.4g} s: its runs cannot be told apart, record '
             'each in a bag of its own'
         )
-
-
-def _falls_of_messages(bag: Bag, topics: Collection[str]) -> Iterator[tuple[str, int, int]]:
-    """Yield what `falls` does of a bag whose files are not read by chunks."""
-    if all(isinstance(one, McapStorage) and one.is_indexed for one in bag.storages):
-        return
-    courses: dict[str, _Course] = {}
-    for message in bag.as_written(topics):
-        course = courses.setdefault(message.topic, _Course())
-        if fall := course.fall(message.log_time, message.log_time):
-            yield message.topic, *fall
