@@ -293,7 +293,23 @@ class _Parts:
         ]
         contents += self._files
         for name, bag, messages in self._bags:
-            contents += self._masked_bag(name, bag, messages)
+            topics = {message.topic: self._mask.text(message.topic) for message in messages}
+            with tempfile.TemporaryDirectory() as folder, BagWriter(Path(folder), name) as writer:
+                for topic, shown in topics.items():
+                    kind = bag.types[topic]
+                    writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
+                for message in messages:
+                    try:
+                        data = self._mask.message(bag.types[message.topic], message.data)
+                    except Exception as error:
+                        bag.refuse(message, str(error))
+                        continue
+                    times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+                    writer.write(topics[message.topic], data, **times)
+                writer.close()
+                self._remarks += bag.notes
+                files = sorted(file for file in Path(folder).iterdir() if file.is_file())
+                contents += [(f'{name}/{file.name}', file.read_bytes()) for file in files]
         contents = self._bounded(contents)
         lines = self._lines(contents)
         buffer = io.BytesIO()
@@ -312,28 +328,6 @@ class _Parts:
             masked = self._mask.text(name)
             kept[f'{len(kept)}_{masked}' if masked in kept else masked] = content
         return list(kept.items())
-
-    def _masked_bag(
-        self, name: str, bag: Bag, messages: Sequence[Message]
-    ) -> list[tuple[str, bytes]]:
-        """Return the files of a bag of messages."""
-        topics = {message.topic: self._mask.text(message.topic) for message in messages}
-        with tempfile.TemporaryDirectory() as folder, BagWriter(Path(folder), name) as writer:
-            for topic, shown in topics.items():
-                kind = bag.types[topic]
-                writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
-            for message in messages:
-                try:
-                    data = self._mask.message(bag.types[message.topic], message.data)
-                except Exception as error:
-                    bag.refuse(message, str(error))
-                    continue
-                times = {'log_time': message.log_time, 'publish_time': message.publish_time}
-                writer.write(topics[message.topic], data, **times)
-            writer.close()
-            self._remarks += bag.notes
-            files = sorted(file for file in Path(folder).iterdir() if file.is_file())
-            return [(f'{name}/{file.name}', file.read_bytes()) for file in files]
 
     def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:
         hidden = self._mask.count

@@ -37,15 +37,6 @@ SAME = 0.02
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Comparison:
-    """Full solve less surface [-], NaN where either is unknown, and whether that was stated."""
-
-    efficiency: float = NAN
-    rcs: float = NAN
-    within_stated_error: bool = False
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class SolvedAt:
     """Where a full solve was made: screw speed [rad/s], opposing load [N], temperature [K]."""
 
@@ -88,16 +79,22 @@ def solved_at(row: Row) -> SolvedAt:
     )
 
 
-def compare(full: Found, surface: Found) -> Comparison:
-    """Hold a full solve against the answer of the surface, if there is one."""
+def compare(full: Found, surface: Found) -> tuple[dict[str, float], bool]:
+    """
+    Hold a full solve against the answer of the surface.
+
+    Returns full solve less surface [-], NaN where either is unknown, and whether both are within
+    what is stated.
+
+    """
     if surface.validity != PointValidity.VALID:
-        return Comparison()
+        return dict.fromkeys(JUDGED, NAN), False
     differences = {name: getattr(full, name) - getattr(surface, name) for name in JUDGED}
     within = all(
         abs(difference) <= stated_error(surface, name) + known(getattr(full, f'{name}_stderr'))
         for name, difference in differences.items()
     )
-    return Comparison(**differences, within_stated_error=within)
+    return differences, within
 
 
 def stated_error(surface: Found, name: str) -> float:

@@ -337,25 +337,22 @@ class Intake(Waitable):
         begin, step = time.monotonic(), 0
         if self._clock is None:  # by how much [ns] the clock of the system was set
             step = system_step(self._system_steps)
-        at_once = self.is_compiled and self._clock is None and not step
-        messages, events = self._drain_at_once() if at_once else self._drain_each(step)
+        if self.is_compiled and self._clock is None and not step:  # all of it is one turn
+            taken = self._taken()
+            messages = sum(len(received) for _, received in taken)
+            events = sum(len(topic.readers) * len(received) for topic, received in taken)
+            if messages:
+                now, wall = self.now, time.time_ns()
+                self._learn()
+                self._hand_over_burst(Burst.taken(taken, now, wall))
+        else:
+            messages, events = self._drain_each(step)
         if messages:
-            now = time.monotonic()
-            self._worked(now - begin, messages)
+            end = time.monotonic()
+            self._worked(end - begin, messages)
             if self._compiled is not None:
-                self._compiled.count(events, now)
+                self._compiled.count(events, end)
         return messages
-
-    def _drain_at_once(self) -> tuple[int, int]:
-        """Hand over all that waits as one turn; return how many messages and events that was."""
-        taken = self._taken()
-        counts = [len(messages) for _, messages in taken]
-        if not any(counts):
-            return 0, 0
-        now, wall = self.now, time.time_ns()
-        self._learn()
-        self._hand_over_burst(Burst.taken(taken, now, wall))
-        return sum(counts), sum(len(topic.readers) * len(messages) for topic, messages in taken)
 
     def _drain_each(self, step: int) -> tuple[int, int]:
         """Hand over all that waits; a `step` [ns] of the clock and one of `/clock` end a turn."""

@@ -16,13 +16,7 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, kelvin, machine_nut
-from ballscrew_monitor.judge.full_point import (
-    compare,
-    Comparison,
-    request_of,
-    solved_at,
-    with_numbers,
-)
+from ballscrew_monitor.judge.full_point import compare, request_of, solved_at, with_numbers
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_monitor.messages.unjudged import reason_of
@@ -241,7 +235,7 @@ def empty_result(status: str) -> Any:
     for part in (result.full, result.surface):
         fill_result(part, Row(), 0, status)
     result.efficiency_stderr = result.rcs_stderr = math.nan
-    _fill_comparison(result, Comparison())
+    result.efficiency_difference = result.rcs_difference = math.nan
     return result
 
 
@@ -258,7 +252,9 @@ def result_message(axis: AxisPublisher, row: Row, job: Job) -> Any:
         full = read_solved(job.result, opposing_load=load, lead=axis.surface.lead)
         solved = with_numbers(answer, full, rcs_limit=axis.settings.limits.rcs)
         fill_result(result.full, solved, PointResult.TIER_FULL, '')
-        _fill_comparison(result, compare(full, answer))
+        differences, result.within_stated_error = compare(full, answer)
+        result.efficiency_difference = float(differences['efficiency'])
+        result.rcs_difference = float(differences['rcs'])
         result.efficiency_stderr = float(full.efficiency_stderr)
         result.rcs_stderr = float(full.rcs_stderr)
         result.success = True
@@ -273,9 +269,3 @@ def read_solved(solved: Mapping[str, Any], *, opposing_load: float, lead: float)
     return solved_point(
         *(means, spread, spread), worst_contact=worst, opposing_load=opposing_load, lead=lead
     )
-
-
-def _fill_comparison(result: Any, comparison: Comparison) -> None:
-    result.efficiency_difference = float(comparison.efficiency)
-    result.rcs_difference = float(comparison.rcs)
-    result.within_stated_error = comparison.within_stated_error

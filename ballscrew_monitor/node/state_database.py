@@ -71,7 +71,20 @@ class StateDatabase(Store):
         had of it now.
 
         """
-        self._lock_folder()
+        if not self._is_locked:
+            if self._lock >= 0:
+                self._damage.append(f'{self.folder} {LOST}')
+                self._unlock()
+            self.folder.mkdir(parents=True, exist_ok=True)
+            lock = os.open(self.folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError as error:
+                os.close(lock)
+                if isinstance(error, BlockingIOError):
+                    raise InputError(f'{self.folder} {IN_USE}') from None
+                raise
+            self._lock = lock
         numbers: list[AxisRecord] = []
         rescue = functools.partial(self._last_numbers, numbers)
         records, sentence = self.recovered(self._records, rescue)
@@ -107,23 +120,6 @@ class StateDatabase(Store):
         if self._lock >= 0:
             os.close(self._lock)
         self._lock = -1
-
-    def _lock_folder(self) -> None:
-        if self._is_locked:
-            return
-        if self._lock >= 0:
-            self._damage.append(f'{self.folder} {LOST}')
-            self._unlock()
-        self.folder.mkdir(parents=True, exist_ok=True)
-        lock = os.open(self.folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            os.close(lock)
-            if isinstance(error, BlockingIOError):
-                raise InputError(f'{self.folder} {IN_USE}') from None
-            raise
-        self._lock = lock
 
     def _records(self) -> Records:
         if size_of(self.file) > SHARE * self.limit:  # a limit of before was larger

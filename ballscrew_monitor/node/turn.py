@@ -74,12 +74,8 @@ class Turn(NamedTuple):
         return turns
 
 
-class _Slot(NamedTuple):
-    """An input that is read in a turn, and the way to its number."""
-
-    axis: Axis
-    source: Input
-    layout: Layout
+Slot = tuple[Axis, Input, Layout]
+"""An input that is read in a turn, and the way to its number."""
 
 
 class _Slots:
@@ -90,14 +86,14 @@ class _Slots:
         self.slots = [slot for slots in by_topic for slot in slots]
         self.counts = np.array([len(slots) for slots in by_topic], np.intp)
         self.begins = np.cumsum(self.counts) - self.counts
-        self.source = np.array([slot.source.source for slot in self.slots], np.int64)
-        scalings = [slot.source.scaling for slot in self.slots]
+        self.source = np.array([source.source for _, source, _ in self.slots], np.int64)
+        scalings = [source.scaling for _, source, _ in self.slots]
         self.factor = np.array([scaling.factor for scaling in scalings], np.float64)
         self.shift = np.array([scaling.shift for scaling in scalings], np.float64)
-        self.ways = Ways([slot.layout for slot in self.slots])
+        self.ways = Ways([layout for _, _, layout in self.slots])
         for topic, slots in zip(topics, by_topic):
-            for slot in slots:  # of one publisher, whatever its numbers are
-                topic.count((slot.axis.name, slot.source.source), NO_NUMBER, 0)
+            for axis, source, _ in slots:  # of one publisher, whatever its numbers are
+                topic.count((axis.name, source.source), NO_NUMBER, 0)
 
 
 class _Found(NamedTuple):
@@ -129,14 +125,30 @@ class TurnReader:
         events = _samples(found, slots)
         for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
             _, slot, value, stamp, now, missing, most_ahead = (part[at].item() for part in found)
-            lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot].source
+            lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot][1]
             events[at] = _record(
                 source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
             )
-        axes = np.array([self._numbers[slot.axis.name] for slot in slots.slots], np.int64)
+        axes = np.array([self._numbers[axis.name] for axis, *_ in slots.slots], np.int64)
         numbers, joints = axes[found.slot], dict[int, OtherJoints]()
-        if len(odd):
-            events, numbers, joints = self._with_odd(burst, odd, found.message, events, numbers)
+        if len(odd):  # messages that are read by themselves
+            read = [
+                (at, axis, event)
+                for at in odd.tolist()
+                for axis, event in self._read(burst.heard(at))
+            ]
+            joints = {
+                at: event.joints
+                for at, (_, _, event) in enumerate(read, len(events))
+                if isinstance(event, Refusal) and event.joints is not None
+            }
+            events = joined([events, *(_record(event) for _, _, event in read)])
+            others = np.array([self._numbers[axis.name] for _, axis, _ in read], np.int64)
+            numbers = np.concatenate((numbers, others))
+            places = np.array([at for at, _, _ in read], np.intp)
+            in_turn = np.argsort(np.concatenate((found.message, places)), kind='stable')
+            events, numbers = some(events, in_turn), numbers[in_turn]
+            joints = _moved(joints, in_turn)
         order = _order(events)
         return Turn(self._axes, some(events, order), numbers[order], _moved(joints, order))
 
@@ -150,30 +162,6 @@ class TurnReader:
             self._known, self._slots = known, _Slots(topics, several)
         return self._slots
 
-    def _with_odd(
-        self,
-        burst: Burst,
-        odd: NDArray[np.intp],
-        message: NDArray[np.intp],
-        events: Events,
-        numbers: NDArray[np.int64],
-    ) -> tuple[Events, NDArray[np.int64], dict[int, OtherJoints]]:
-        """Return the events of messages with those of others, which are read by themselves."""
-        read = [
-            (at, axis, event) for at in odd.tolist() for axis, event in self._read(burst.heard(at))
-        ]
-        joints = {
-            at: event.joints
-            for at, (_, _, event) in enumerate(read, len(events))
-            if isinstance(event, Refusal) and event.joints is not None
-        }
-        events = joined([events, *(_record(event) for _, _, event in read)])
-        others = np.array([self._numbers[axis.name] for _, axis, _ in read], np.int64)
-        messages = np.concatenate((message, np.array([at for at, _, _ in read], np.intp)))
-        order = np.argsort(messages, kind='stable')
-        numbers = np.concatenate((numbers, others))
-        return some(events, order), numbers[order], _moved(joints, order)
-
 
 def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.intp]]:
     """Return what the messages have at the slots, but for odd ones, which come beside it."""
@@ -182,7 +170,7 @@ def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.i
     within = np.arange(len(message)) - np.repeat(np.cumsum(counts) - counts, counts)
     slot = slots.begins[burst.topic[message]] + within
     is_plain, number, stamp = slots.ways.walk(burst.data, burst.place[message], slot)
-    most_ahead = np.array([one.axis.max_future + ahead for one in slots.slots], np.int64)
+    most_ahead = np.array([axis.max_future + ahead for axis, *_ in slots.slots], np.int64)
     found = _Found(
         message=message,
         slot=slot,
@@ -225,14 +213,14 @@ def _record(event: InputSample | Refusal) -> Events:
     return as_array(record)
 
 
-def _slots_of(topic: Topic, several: frozenset[InputName]) -> list[_Slot]:
+def _slots_of(topic: Topic, several: frozenset[InputName]) -> list[Slot]:
     """Return a slot for each reader of a topic; none if its messages are read by themselves."""
-    slots = []
+    slots: list[Slot] = []
     for reader, (axis, source) in enumerate(topic.readers):
         field = topic.field(reader) if topic.subscription.raw else None
         if field is None or topic.loss.publishers > 1 or (axis.name, source.source) in several:
             return []
-        slots.append(_Slot(axis, source, field.layout))
+        slots.append((axis, source, field.layout))
     return slots
 
 

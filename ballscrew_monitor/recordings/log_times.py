@@ -9,7 +9,8 @@ one when they were published. One that holds no time comes with the message befo
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+import contextlib
 import dataclasses
 from pathlib import Path
 import statistics
@@ -61,11 +62,12 @@ class _HeldTimes:
     def __init__(self, storages: Sequence[Storage]) -> None:
         self.count, first = 0, 0
         self._shifts: dict[str, int] = {}
-        self._stamps = {
-            name: _stamp_reader(info.type_name)
-            for storage in storages
-            for name, info in storage.topics.items()
-        }
+        self._stamped = set[str]()  # topics whose messages begin with a stamp
+        for name, info in (pair for storage in storages for pair in storage.topics.items()):
+            with contextlib.suppress(InputError):
+                fields = message_class(info.type_name).get_fields_and_field_types()
+                if next(iter(fields.values()), '') in STAMPED:
+                    self._stamped.add(name)
         for storage in storages:
             for message in map(whole, storage.messages(storage.topics, as_written=True)):
                 self.count += 1
@@ -84,8 +86,13 @@ class _HeldTimes:
         return max(held + shift, 0) if held else before or self.first
 
     def _held(self, message: Message) -> int:
-        stamp = self._stamps[message.topic]
-        return stamp(message.data) if stamp else message.publish_time
+        data = message.data
+        if message.topic not in self._stamped:
+            return message.publish_time
+        if len(data) < STAMP + TIMES[0].size:
+            return 0
+        seconds, nanoseconds = TIMES[data[1] & 1].unpack_from(data, STAMP)
+        return max(int(seconds) * SECOND + int(nanoseconds), 0)
 
 
 class _Retimed(Storage):
@@ -115,19 +122,3 @@ class _Retimed(Storage):
         for message in map(whole, self._storage.messages(wanted, as_written=True)):
             before = self._times.log_time(message, before)
             yield message, before
-
-
-def _stamp_reader(type_name: str) -> Callable[[bytes], int] | None:
-    """Return what reads the stamp [ns] at the begin of a message of a type, None without one."""
-    try:
-        fields = message_class(type_name).get_fields_and_field_types()
-    except InputError:
-        return None
-    return _stamp if next(iter(fields.values()), '') in STAMPED else None
-
-
-def _stamp(data: bytes) -> int:
-    if len(data) < STAMP + TIMES[0].size:
-        return 0
-    seconds, nanoseconds = TIMES[data[1] & 1].unpack_from(data, STAMP)
-    return max(int(seconds) * SECOND + int(nanoseconds), 0)

@@ -10,7 +10,7 @@ window means, because samples within a window share the ripple of one revolution
 
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 import itertools
 import math
 
@@ -74,7 +74,20 @@ def read_no_load(
 
     """
     series, refused = _read(bag, channels)
-    windows = _windows(series)
+    speed, torque = series[Source.SPEED], series[Source.TORQUE]
+    begin = max(speed[0][0], torque[0][0])
+    windows: list[Window | None] = []  # in turn, None for one that is not steady in itself
+    for place in range(int((min(speed[0][-1], torque[0][-1]) - begin) / WINDOW)):
+        span = (begin + place * WINDOW, begin + (place + 1) * WINDOW)
+        (time, speeds), (_, torques) = _between(speed, *span), _between(torque, *span)
+        window = None
+        if min(len(speeds), len(torques)) >= FEWEST_SAMPLES and _is_steady(time, speeds):
+            heat = math.nan
+            if Source.TEMPERATURE in series:  # the last one before, or the first
+                times, values = series[Source.TEMPERATURE]
+                heat = float(values[max(0, int(np.searchsorted(times, span[1])) - 1)])
+            window = float(speeds.mean()), float(torques.mean()), heat
+        windows.append(window)
     steady = [
         window
         for before, window in itertools.pairwise(windows)
@@ -143,25 +156,6 @@ def _series(samples: list[tuple[int, float]]) -> Series:
     ordered = sorted(samples)
     times = np.array([conversions.seconds(stamp) for stamp, _ in ordered])
     return times, np.array([value for _, value in ordered])
-
-
-def _windows(series: Mapping[Source, Series]) -> list[Window | None]:
-    """Return the windows of the recording in turn, None for one that is not steady in itself."""
-    speed, torque = series[Source.SPEED], series[Source.TORQUE]
-    begin = max(speed[0][0], torque[0][0])
-    windows: list[Window | None] = []
-    for place in range(int((min(speed[0][-1], torque[0][-1]) - begin) / WINDOW)):
-        span = (begin + place * WINDOW, begin + (place + 1) * WINDOW)
-        (time, speeds), (_, torques) = _between(speed, *span), _between(torque, *span)
-        window = None
-        if min(len(speeds), len(torques)) >= FEWEST_SAMPLES and _is_steady(time, speeds):
-            heat = math.nan
-            if Source.TEMPERATURE in series:  # the last one before, or the first
-                times, values = series[Source.TEMPERATURE]
-                heat = float(values[max(0, int(np.searchsorted(times, span[1])) - 1)])
-            window = float(speeds.mean()), float(torques.mean()), heat
-        windows.append(window)
-    return windows
 
 
 def _between(series: Series, begin: float, end: float) -> Series:

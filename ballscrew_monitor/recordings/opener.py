@@ -35,7 +35,16 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
             )
             raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')
         return Bag(path, salvage=True)
-    if not is_table(path) and not _may_be_table(path):
+    may_be_table = is_table(path)
+    if not may_be_table and path.is_file() and kind_of(path) != 'rosbag1':
+        from ballscrew_monitor.recordings.tables.codings import GZIP, wide_coding
+
+        with path.open('rb') as stream:
+            head = stream.read(512)
+        # A text, packed or not, or a file of signals may have any ending.
+        is_known = head.startswith((*SIGNALS, GZIP)) or bool(wide_coding(head))
+        may_be_table = is_known or not (head.startswith(b'\x89') or CONTROLS & set(head))
+    if not may_be_table:
         raise InputError(
             f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet, '
             'xlsx, or a file of signals'
@@ -49,16 +58,3 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
     return TableLog(path, read_map(mapping), shown)
-
-
-def _may_be_table(path: Path) -> bool:
-    """Return True if a file of any ending is a text, packed or not, or one of signals."""
-    from ballscrew_monitor.recordings.tables.codings import GZIP, wide_coding
-
-    if not path.is_file() or kind_of(path) == 'rosbag1':
-        return False
-    with path.open('rb') as stream:
-        head = stream.read(512)
-    if head.startswith((*SIGNALS, GZIP)) or wide_coding(head):
-        return True
-    return not (head.startswith(b'\x89') or CONTROLS & set(head))

@@ -48,13 +48,36 @@ TAGS = {
 
 def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
     """Yield what the verdicts rest on that is neither measured nor stated, if anything."""
-    groups = grouped({case.axis: list(_assumed_names(case)) for case in cases})
+    assumed: dict[str, list[str]] = {case.axis: [] for case in cases}
+    for case in cases:
+        names, temperature = assumed[case.axis], case.settings.default_temperature
+        if case.nominal:
+            names += [KEYS['screw'], KEYS['oil']]
+        if case.load_origin:
+            names.append(f'axial load, {case.load_origin}')
+        is_assumed = case.facts.default_temperature_known == 'assumed'
+        if Source.TEMPERATURE not in case.inputs and is_assumed:
+            names.append(f'oil temperature of {celsius(temperature):g} °C')
+        for key, assumption in case.facts.assumed.items():
+            if key in ('load.from', 'load', 'temperature_degC'):  # told above
+                continue
+            value = assumption.get('value')
+            shown = f'{value:g}' if isinstance(value, float) else str(value)
+            if key == 'efficiency' and isinstance(value, float):
+                shown = f'{100.0 * value:g} %'
+            quantity, _, part = key.rpartition('.')
+            if quantity and part == 'unit':
+                names.append(f'{quantity} in {shown_unit(shown)}')
+            elif key in KEYS:
+                names.append(KEYS[key].format(shown))
+            else:
+                names.append(key.replace('.', ' ').replace('_', ' '))
+    groups = grouped(assumed)
     head, tail = 'Assumed, neither measured nor stated:', 'The verdict holds as far as these do.'
     if not groups:
         return
     if len(cases) == 1:
-        names = ', '.join(groups[0][1])
-        yield element('p', f'{head} {names}. {tail}', class_='hint')
+        yield element('p', f'{head} {", ".join(groups[0][1])}. {tail}', class_='hint')
         return
     items = (element('li', f'{whose}: {", ".join(names)}') for whose, names in groups)
     yield element(
@@ -65,29 +88,6 @@ def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
 def checks(cases: Sequence[AxisCase]) -> Iterable[Markup]:
     """Yield what contradicts itself among the inputs, with what mends it."""
     return (element('p', f'Check: {hint}.', class_='hint') for hint in hints_on(cases))
-
-
-def _assumed_names(case: AxisCase) -> Iterable[str]:
-    if case.nominal:
-        yield from (KEYS['screw'], KEYS['oil'])
-    if case.load_origin:
-        yield f'axial load, {case.load_origin}'
-    if Source.TEMPERATURE not in case.inputs and case.facts.default_temperature_known == 'assumed':
-        yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
-    for key, assumption in case.facts.assumed.items():
-        value = assumption.get('value')
-        shown = f'{value:g}' if isinstance(value, float) else str(value)
-        if key == 'efficiency' and isinstance(value, float):
-            shown = f'{100.0 * value:g} %'
-        quantity, _, part = key.rpartition('.')
-        if key in ('load.from', 'load', 'temperature_degC'):  # told above
-            continue
-        if quantity and part == 'unit':
-            yield f'{quantity} in {shown_unit(shown)}'
-        elif key in KEYS:
-            yield KEYS[key].format(shown)
-        else:
-            yield key.replace('.', ' ').replace('_', ' ')
 
 
 def assumptions_part(case: AxisCase, parameters: str) -> Markup:

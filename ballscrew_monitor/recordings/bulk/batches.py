@@ -105,7 +105,13 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
         with damage_is_input(storage.file):
             stream = stack.enter_context(storage.file.open('rb'))
             places, channels = bulk_chunks.chunk_indexes(stream, topics)
-            if channels and (not places or _is_packed(stream, places[0])):
+            packed = not places
+            if channels and places:
+                with contextlib.suppress(ChunkDamage):  # are messages compressed by themselves?
+                    chunk = read_chunk(stream, places[0])
+                    begins = chunk.begin.tolist()
+                    packed = any(chunk.data.startswith(ZSTD, begin) for begin in begins)
+            if channels and packed:
                 return None
         places.sort(key=operator.attrgetter('chunk_start_offset'))
         numbers, names = np.full(65536, -1), list(topics)
@@ -116,15 +122,6 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
             for rank, place in enumerate(places, len(chunks))
         ]
     return sorted(chunks, key=lambda each: (each.place.message_start_time, each.rank))
-
-
-def _is_packed(stream: BinaryIO, place: ChunkIndex) -> bool:
-    """Return True if the messages of a chunk are compressed each by itself."""
-    try:
-        chunk = read_chunk(stream, place)
-    except ChunkDamage:
-        return False
-    return any(chunk.data.startswith(ZSTD, begin) for begin in chunk.begin.tolist())
 
 
 def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]:

@@ -219,7 +219,9 @@ def walk_many(data: Any, begin: Any, size: Any, steps: Any, joint: Any, walked: 
 def walk(data: Any, begin: int, end: int, steps: Any, joint: Any, told: Any) -> None:
     """Follow the steps through the message between two places of `data`; fill `told` of it."""
     told.outcome = UNREADABLE
-    if end - begin < HEAD or not _has_head(data, begin):
+    if end - begin < HEAD or data[begin] != _0 or data[begin + 1] != _1:
+        return
+    if data[begin + 2] != _2 or data[begin + 3] != _3:  # not of little-endian CDR
         return
     origin = begin + HEAD
     at, number, place, outcome = origin, 0, -1, UNREADABLE
@@ -283,13 +285,6 @@ def walk(data: Any, begin: int, end: int, steps: Any, joint: Any, told: Any) -> 
         if wanted == BY_NAME and place < 0:
             outcome = OTHER_JOINTS
     told.outcome = outcome
-
-
-def _has_head(data: Any, at: int) -> bool:
-    """Return True if a message begins as one does that is written in little-endian CDR."""
-    return bool(
-        data[at] == _0 and data[at + 1] == _1 and data[at + 2] == _2 and data[at + 3] == _3
-    )
 
 
 def _word(data: Any, at: int) -> Any:
