@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory as the typed values that messages and reports are made of."""
 
-import functools
 import math
 from typing import Any
 
@@ -70,7 +69,7 @@ def input_status_of(
     """
     state = input_state_of(memory, settings, source, now)
     if state is InputState.NOT_CONFIGURED:
-        return _never_read(source)
+        return InputStatus(source=source, state=state)
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
@@ -110,11 +109,6 @@ def input_status_of(
         refusal=refusal,
         joints=joints if memory.others[source] else None,
     )
-
-
-@functools.cache
-def _never_read(source: Source) -> InputStatus:
-    return InputStatus(source=source, state=InputState.NOT_CONFIGURED)
 
 
 def _rate(memory: Any, source: Source) -> float:

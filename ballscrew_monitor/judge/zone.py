@@ -99,26 +99,21 @@ def set_reason(row: Any) -> None:
     if row.gates & STANDSTILL != 0:  # whatever else is missing, there is nothing to judge
         row.reason = STANDS_STILL
     elif row.validity == NO_INPUT:
-        row.reason = _lost_input(row)
+        lost, count = NO_INPUTS, 0  # the only one that is missing
+        if not math.isfinite(row.speed) or row.speed_source == HELD:
+            lost, count = NO_SPEED, 1
+        if row.derived != 0:
+            if not math.isfinite(row.motor_torque) or row.motor_torque_source == HELD:
+                lost, count = NO_TORQUE, count + 1
+        elif not math.isfinite(row.axial_load) or row.axial_load_source == HELD:
+            lost, count = NO_LOAD, count + 1
+        if not math.isfinite(row.temperature) or row.temperature_source == HELD:
+            lost, count = NO_TEMPERATURE, count + 1
+        row.reason = lost if count == 1 else NO_INPUTS
     elif row.derived != 0 and row.validity == 0:
         row.reason = NO_DERIVED_LOAD
     else:
         row.reason = BY_VALIDITY[row.validity]
-
-
-def _lost_input(row: Any) -> int:
-    """Return which input is missing: the only one, or NO_INPUTS."""
-    lost, count = NO_INPUTS, 0
-    if not math.isfinite(row.speed) or row.speed_source == HELD:
-        lost, count = NO_SPEED, 1
-    if row.derived != 0:
-        if not math.isfinite(row.motor_torque) or row.motor_torque_source == HELD:
-            lost, count = NO_TORQUE, count + 1
-    elif not math.isfinite(row.axial_load) or row.axial_load_source == HELD:
-        lost, count = NO_LOAD, count + 1
-    if not math.isfinite(row.temperature) or row.temperature_source == HELD:
-        lost, count = NO_TEMPERATURE, count + 1
-    return lost if count == 1 else NO_INPUTS
 
 
 def is_judged(row: Any) -> bool:

@@ -105,7 +105,16 @@ class PageApp:
         language = self._language_of(request)
         if request.method != 'POST':
             return HTMLResponse(components.login(language), status_code=401)
-        accepted = await self._tokens.accept(await _token_in(request))
+        content = b''
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(FORM_TIME):
+                async for part in request.stream():
+                    content += part
+                    if len(content) > LARGEST_FORM:
+                        content = b''  # nor is more of it read
+                        break
+        fields = parse_qs(content.decode('utf-8', 'replace'))
+        accepted = await self._tokens.accept(fields.get('token', [''])[0])
         if accepted is None:
             return HTMLResponse(components.login(language, 'login_busy'), status_code=429)
         if not accepted:
@@ -162,16 +171,3 @@ async def _send(socket: WebSocket, browser: Browser) -> None:
     with contextlib.suppress(WebSocketDisconnect):
         while True:
             await socket.send_bytes(await browser.take())
-
-
-async def _token_in(request: Request) -> str:
-    """Return the token in a form, of which no more is read than that may take."""
-    content = b''
-    with contextlib.suppress(TimeoutError):
-        async with asyncio.timeout(FORM_TIME):
-            async for part in request.stream():
-                content += part
-                if len(content) > LARGEST_FORM:
-                    return ''
-    fields = parse_qs(content.decode('utf-8', 'replace'))
-    return fields.get('token', [''])[0]

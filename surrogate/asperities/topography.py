@@ -93,12 +93,25 @@ def acting_roughness(
     `modulus` [Pa] as `press` has it.
 
     """
-    coarse = [_coarser(tile, shortest_wave) for tile in tiles]
-    gaps, waves, cuts = (
-        np.array(values)
-        for values in zip(*(_left(tile, modulus, shortest_wave) for tile in coarse), strict=True)
-    )
-    lays = np.array([lay_of(tile) for tile in coarse])
+    # Logarithms of what rolling leaves over reduction and pressure: mean gap, rms, mean wave [m].
+    gaps = np.empty((len(tiles), len(REDUCTIONS), len(PRESSURES)))
+    heights, waves = np.empty(gaps.shape[:2]), np.empty(gaps.shape[:2])
+    lays = np.empty(len(tiles))
+    for place, fine in enumerate(tiles):
+        spacing = fine.length / fine.heights.shape[0]
+        step = max(1, int(shortest_wave / (NODES_PER_WAVE * spacing) + 1e-9))
+        tile = replace(fine, heights=fine.heights[::step, ::step])
+        lays[place] = lay_of(tile)
+        for row, reduction in enumerate(REDUCTIONS / shortest_wave):
+            left = left_by_rolling(tile, float(reduction))
+            square = left.moment(0)
+            heights[place, row] = 0.5 * math.log(square)
+            waves[place, row] = math.log(2 * math.pi * math.sqrt(square / left.moment(1)))
+            for column, pressure in enumerate(PRESSURES):
+                load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
+                pressed = press(left, modulus, load, tolerance=TOLERANCE)
+                gaps[place, row, column] = math.log(max(pressed.separation, FLAT))
+    cuts = gaps - heights[..., None] - math.log(UNCUT)
     power = RIDGE_POWER * lays
     each = gaps + WAVE_POWER * waves[..., None] + power[:, None, None] * cuts
     return ActingRoughness(
@@ -109,27 +122,6 @@ def acting_roughness(
         cut=float(cuts[:, len(REDUCTIONS) // 2, len(PRESSURES) // 2].mean()),
         shortest_wave=shortest_wave,
     )
-
-
-def _left(tile: Tile, modulus: float, shortest_wave: float) -> tuple[Array, Array, Array]:
-    """
-    Return logarithms of what rolling leaves of a tile over reduction and pressure.
-
-    Mean gap [m]; mean wave [m], over the reduction alone; gap by rms over `UNCUT` [-].
-
-    """
-    gaps = np.empty((len(REDUCTIONS), len(PRESSURES)))
-    heights, waves = np.empty(len(REDUCTIONS)), np.empty(len(REDUCTIONS))
-    for row, reduction in enumerate(REDUCTIONS / shortest_wave):
-        left = left_by_rolling(tile, float(reduction))
-        square = left.moment(0)
-        heights[row] = 0.5 * math.log(square)
-        waves[row] = math.log(2 * math.pi * math.sqrt(square / left.moment(1)))
-        for column, pressure in enumerate(PRESSURES):
-            load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
-            pressed = press(left, modulus, load, tolerance=TOLERANCE)
-            gaps[row, column] = math.log(max(pressed.separation, FLAT))
-    return gaps, waves, gaps - heights[:, None] - math.log(UNCUT)
 
 
 def left_by_rolling(tile: Tile, reduction: float) -> Tile:
@@ -154,10 +146,3 @@ def lay_of(tile: Tile) -> float:
     power[:, 1:] *= 2.0
     squares = power * along**2, power * across**2
     return float((squares[1] - squares[0]).sum() / (squares[1] + squares[0]).sum())
-
-
-def _coarser(tile: Tile, shortest_wave: float) -> Tile:
-    """Return every n-th node of a tile, `NODES_PER_WAVE` in the shortest wave [m] or more."""
-    spacing = tile.length / tile.heights.shape[0]
-    step = max(1, int(shortest_wave / (NODES_PER_WAVE * spacing) + 1e-9))
-    return replace(tile, heights=tile.heights[::step, ::step])

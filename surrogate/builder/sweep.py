@@ -92,7 +92,18 @@ def load_catalogue(path: Path) -> list[Item]:
             raise InputError(f'{path}: unknown key {key}, allowed are {", ".join(KEYS)}')
     tier = content.get('tier', 'closed_form')
     check_tier(str(tier))
-    ranges = _ranges(path, content)
+    ranges = {}
+    for key, (name, factor, shift) in RANGES.items():
+        if key not in content:
+            continue
+        ends = content[key]
+        sound = isinstance(ends, list) and len(ends) == 2
+        if not sound or not all(isinstance(end, int | float) for end in ends):
+            raise InputError(f'{path}: {key} is {ends!r}, allowed is [low, high]')
+        low, high = ((end + shift) * factor for end in ends)
+        if not (math.isfinite(low) and math.isfinite(high) and low < high):
+            raise InputError(f'{path}: {key} is {ends}, allowed is the low end first')
+        ranges[name] = (low, high)
     screws = [load_screw(_place(path, name)) for name in _names(path, content, 'screws')]
     oils = [load_lubricant(_place(path, name)) for name in _names(path, content, 'oils')]
     items = [
@@ -150,22 +161,6 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
     return variants
 
 
-def _ranges(path: Path, content: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
-    ranges = {}
-    for key, (name, factor, shift) in RANGES.items():
-        if key not in content:
-            continue
-        ends = content[key]
-        sound = isinstance(ends, list) and len(ends) == 2
-        if not sound or not all(isinstance(end, int | float) for end in ends):
-            raise InputError(f'{path}: {key} is {ends!r}, allowed is [low, high]')
-        low, high = ((end + shift) * factor for end in ends)
-        if not (math.isfinite(low) and math.isfinite(high) and low < high):
-            raise InputError(f'{path}: {key} is {ends}, allowed is the low end first')
-        ranges[name] = (low, high)
-    return ranges
-
-
 def sweep(
     items: list[Item], out: Path, pool: Pool, report: Callable[[Built], None]
 ) -> list[Built]:
@@ -190,8 +185,22 @@ def sweep(
         report=lambda outcome: take(_written(named[outcome.name], outcome, out)),
     )
     for item in items:
-        if spreads(item.tier):
-            take(_build_here(item, out, pool))
+        if not spreads(item.tier):
+            continue
+        # The builder itself gives its solves to the workers.
+        file, began = out / f'{item.name}.npz', time.perf_counter()
+        outcome = TaskOutcome(name=item.name, result=None, worker=worker_name())
+        try:
+            settings = default_settings(item.tier, item.screw, item.ranges)
+            inputs = item.tier, item.screw, item.lubricant, settings
+            data = build_surface(*inputs, pool=pool, out=file)
+            write(file, data)
+        except Exception as error:  # whatever it is, it is this item's alone
+            failed = replace(outcome, sentence=describe_failure(error))
+            take(Built(item=item, outcome=failed))
+            continue
+        outcome = replace(outcome, seconds=time.perf_counter() - began)
+        take(Built(item=item, outcome=outcome, file=file, data=data))
     return [surfaces[item.name] for item in items]
 
 
@@ -222,17 +231,3 @@ def _written(item: Item, outcome: TaskOutcome, out: Path) -> Built:
     except SurfaceError as error:
         return Built(item=item, outcome=replace(outcome, result=None, sentence=str(error)))
     return Built(item=item, outcome=outcome, file=file, data=data)
-
-
-def _build_here(item: Item, out: Path, pool: Pool) -> Built:
-    """Build a surface whose solves the builder itself gives to the workers."""
-    file, began = out / f'{item.name}.npz', time.perf_counter()
-    outcome = TaskOutcome(name=item.name, result=None, worker=worker_name())
-    try:
-        settings = default_settings(item.tier, item.screw, item.ranges)
-        data = build_surface(item.tier, item.screw, item.lubricant, settings, pool=pool, out=file)
-        write(file, data)
-    except Exception as error:  # whatever it is, it is this item's alone
-        return Built(item=item, outcome=replace(outcome, sentence=describe_failure(error)))
-    seconds = time.perf_counter() - began
-    return Built(item=item, outcome=replace(outcome, seconds=seconds), file=file, data=data)

@@ -57,6 +57,14 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
         )
     else:
         hot = Noted(given.viscosity_100, 'given')
+    if given.kind == 'grease':  # whose film starves below that of its base oil
+        stated_factor = stated(given.film_factor, typical(GREASE_FACTOR, '0.5 to 1'))
+        shares = stated_factor.value, WORST_FACTOR
+        now, worst = (share ** (-1 / SPEED_EXPONENT) for share in shares)
+        words = f'the onset is {now:.1f} times as fast, {worst:.1f} times with {WORST_FACTOR:g}'
+        factor = Noted(stated_factor.value, f'{stated_factor.note}; {words}')
+    else:
+        factor = stated(given.film_factor, typical(1.0, 'oil in plenty'))
     return noted_sheet(
         Lubricant,
         {
@@ -76,16 +84,6 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
             'film_floor': typical(3e-9, '2 to 5 with anti-wear additives, 0.5 to 2 without'),
             'film_floor_low': typical(1e-9, 'a few molecules of base oil'),
             'film_floor_high': typical(5e-9, 'a thick boundary film'),
-            'film_factor': _film_factor(given),
+            'film_factor': factor,
         },
     )
-
-
-def _film_factor(given: CatalogueOil) -> Noted:
-    """Return the film factor; the film of a grease starves below that of its base oil."""
-    if given.kind != 'grease':
-        return stated(given.film_factor, typical(1.0, 'oil in plenty'))
-    factor = stated(given.film_factor, typical(GREASE_FACTOR, '0.5 to 1'))
-    now, worst = (share ** (-1 / SPEED_EXPONENT) for share in (factor.value, WORST_FACTOR))
-    words = f'the onset is {now:.1f} times as fast, {worst:.1f} times with {WORST_FACTOR:g}'
-    return Noted(factor.value, f'{factor.note}; {words}')

@@ -126,7 +126,20 @@ def _identify(args: argparse.Namespace) -> int:
     fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
     if args.onset:
         from surrogate.identify.onset import FITTED as fitted
-    contacts = _contacts(args, screw, lubricant, run, fitted)
+    contacts: Any
+    if args.tier == 'full':  # which alone loads the solver
+        from surrogate.identify.table import solved_model
+
+        report = Progress(0, 'speeds solved').show
+        contacts = solved_model(screw, lubricant, run, fitted, progress=report)
+    elif args.onset:
+        from surrogate.identify.table import formula_model
+
+        contacts = formula_model(screw, lubricant, run, fitted)
+    else:
+        from surrogate.identify.model import closed_form_model
+
+        contacts = closed_form_model(screw, lubricant, run)
     result = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, result)
     show(record, page, json=args.json)
@@ -208,24 +221,6 @@ def _refuse(args: argparse.Namespace, names: tuple[str, ...], kind: str) -> None
         raise InputError(
             f'--{given[0].replace("_", "-")} has no meaning here: {args.data} is a {kind}'
         )
-
-
-def _contacts(
-    args: argparse.Namespace, screw: Screw, lubricant: Lubricant, run: Any, fitted: tuple[str, ...]
-) -> Any:
-    """Return the contacts of the run; only the full tier loads the solver."""
-    if args.tier == 'full':
-        from surrogate.identify.table import solved_model
-
-        report = Progress(0, 'speeds solved').show
-        return solved_model(screw, lubricant, run, fitted, progress=report)
-    if args.onset:
-        from surrogate.identify.table import formula_model
-
-        return formula_model(screw, lubricant, run, fitted)
-    from surrogate.identify.model import closed_form_model
-
-    return closed_form_model(screw, lubricant, run)
 
 
 def _write(

@@ -100,20 +100,17 @@ def _sheets(screw: str) -> tuple[Screw, Lubricant]:
     if screw.endswith('.npz'):
         return screw_and_oil(read(screw).header['inputs'])
     lubricant = load_lubricant('iso_vg_68')
-    return _as_shipped(load_screw(screw), lubricant), lubricant
-
-
-def _as_shipped(screw: Screw, lubricant: Lubricant) -> Screw:
-    """Return a shipped screw with the marches of its shipped surface, any other as it is."""
+    sheet = load_screw(screw)
     try:
-        path = shipped_surface(screw.name, lubricant.name, SHIPPED_TIERS[0])
+        path = shipped_surface(sheet.name, lubricant.name, SHIPPED_TIERS[0])
     except SurfaceError:
-        return screw
+        return sheet, lubricant
+    # A shipped screw has the marches of its shipped surface.
     stated = read(path).header['inputs']['screw']
     raceway = stated['roughness']
-    marches = {name: raceway[name] for name in screw.roughness.MARCHED if name in raceway}
-    marched = replace(screw, roughness=replace(screw.roughness, **marches))
-    return marched if marched.stated() == stated else screw
+    marches = {name: raceway[name] for name in sheet.roughness.MARCHED if name in raceway}
+    marched = replace(sheet, roughness=replace(sheet.roughness, **marches))
+    return marched if marched.stated() == stated else sheet, lubricant
 
 
 def examine(screw: Screw, *, verbose: bool = False) -> None:

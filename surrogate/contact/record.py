@@ -93,11 +93,17 @@ def contact_record(
     before it, and in its unit; roughness is NaN or None where a surface is not by the standard.
 
     """
-    numbers = (
-        _rolling(case, solution, surface)
-        if isinstance(solution, MovingSolution)
-        else _standing(case, solution)
-    )
+    if isinstance(solution, MovingSolution):
+        numbers = _rolling(case, solution, surface)
+    else:
+        friction = case.roughness.asperity_friction if case.roughness else ASPERITY_FRICTION
+        numbers = {
+            'rolling_force_N': float(solution.whole_rolling_force),
+            'friction_coefficient': [
+                friction_coefficient(solution, ratio, friction) for ratio in case.slide_roll_ratio
+            ],
+            'grid': [len(solution.x), len(solution.y)],
+        }
     return {
         'status': solution.status.value,
         'converged': bool(solution.converged),
@@ -118,17 +124,6 @@ def friction_coefficient(
         return 0.0
     friction = slide_roll_friction(solution, slide_roll_ratio, asperity_friction=asperity_friction)
     return friction.coefficient
-
-
-def _standing(case: ContactCase, solution: ContactSolution) -> dict[str, Any]:
-    friction = case.roughness.asperity_friction if case.roughness else ASPERITY_FRICTION
-    return {
-        'rolling_force_N': float(solution.whole_rolling_force),
-        'friction_coefficient': [
-            friction_coefficient(solution, ratio, friction) for ratio in case.slide_roll_ratio
-        ],
-        'grid': [len(solution.x), len(solution.y)],
-    }
 
 
 def _rolling(

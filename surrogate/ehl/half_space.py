@@ -103,6 +103,13 @@ def make_half_space(
         first, second = spectrum[0, :, :half], np.zeros_like(spectrum[0, :, :half])
         second[:, : spectrum.shape[2] - half] = spectrum[0, :, half:]
         spectrum = np.stack([first + second, first - second]) / 2
+    # The 3x3 kernel k00, k10, k01, k11 equals the symbol at (pi/2, pi/2), (pi, pi/2), (pi/2, pi)
+    # and (pi, pi): a truncated one would be indefinite on elongated cells.
+    quarter_x, quarter_y = round(length_x / 4), round((symbol.shape[1] - 1) / 2)
+    both, fast_x = symbol[quarter_x, quarter_y], symbol[length_x // 2, quarter_y]
+    fast_y, fastest = symbol[quarter_x, length_y // 2], symbol[length_x // 2, length_y // 2]
+    k10, k01 = (both - fast_x) / 2, (both - fast_y) / 2
+    near = np.array([both, k10, k01, (fastest - both + 2 * k10 + 2 * k01) / 4])
     ordered = np.empty_like(spectrum)
     ordered[:, x.place] = spectrum
     columns = spectrum.shape[2]
@@ -115,7 +122,7 @@ def make_half_space(
         symmetric=symmetric,
         periodic=periodic,
         tile=np.zeros((2, length_y, lanes), dtype),
-        near=_near_kernel(symbol).astype(dtype),
+        near=near.astype(dtype),
         columns=np.zeros((2, length_x, columns), dtype),
     )
 
@@ -141,22 +148,6 @@ def _symbol(length_x: int, length_y: int, aspect: float, periodic: bool) -> Arra
     symbol = np.fft.hfft(rows, axis=0)
     symbol.flags.writeable = False
     return symbol
-
-
-def _near_kernel(symbol: Array) -> Array:
-    """
-    Return k00, k10, k01, k11 of the 3x3 kernel with the symbol of the full one at high frequency.
-
-    It equals the symbol at (pi/2, pi/2), (pi, pi/2), (pi/2, pi) and (pi, pi). A truncated kernel
-    would be indefinite on elongated cells.
-
-    """
-    nx, ny = symbol.shape[0], 2 * (symbol.shape[1] - 1)
-    quarter_x, quarter_y = round(nx / 4), round(ny / 4)
-    both, fast_x = symbol[quarter_x, quarter_y], symbol[nx // 2, quarter_y]
-    fast_y, fastest = symbol[quarter_x, ny // 2], symbol[nx // 2, ny // 2]
-    k10, k01 = (both - fast_x) / 2, (both - fast_y) / 2
-    return np.array([both, k10, k01, (fastest - both + 2 * k10 + 2 * k01) / 4])
 
 
 @njit(cache=True, error_model='numpy')

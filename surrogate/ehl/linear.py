@@ -22,8 +22,18 @@ def solve_linear(
     released = np.where(now.contact, 0.0, state.asperity_pressure)
     rhs = grid.workspace.basis[0]
     rhs[:size] = -now.residual.ravel()
-    if released.any():
-        rhs[:size] -= _apply(now.by_pressure, released).ravel()
+    if released.any():  # it vanishes on the border
+        by_pressure, inner = now.by_pressure, (slice(1, -1), slice(1, -1))
+        flow = np.zeros_like(released)
+        flow[inner] = (
+            by_pressure[0][inner] * released[inner]
+            + by_pressure[1][inner] * released[:-2, 1:-1]
+            + by_pressure[2][inner] * released[2:, 1:-1]
+            + by_pressure[3][inner] * released[1:-1, :-2]
+            + by_pressure[4][inner] * released[1:-1, 2:]
+        )
+        flow[2:-1, 1:-1] += by_pressure[5][2:-1, 1:-1] * released[:-3, 1:-1]
+        rhs[:size] -= flow.ravel()
     border = size + nodes.size
     rhs[size:border] = (problem.floor - now.gap.ravel()[nodes]) * levels[0].inverse
     rhs[border] = now.load_rest
@@ -97,18 +107,3 @@ def contact_box(contact: Mask) -> tuple[int, int, int, int]:
             [max(int(lines[0]) - 1, 1), min(int(lines[-1]) + 2, last)] if lines.size else [1, 1]
         )
     return ends[0], ends[1], ends[2], ends[3]
-
-
-def _apply(planes: Array, field: Array) -> Array:
-    """Apply the pressure planes to a field that vanishes on the border."""
-    out = np.zeros_like(field)
-    inner = (slice(1, -1), slice(1, -1))
-    out[inner] = (
-        planes[0][inner] * field[inner]
-        + planes[1][inner] * field[:-2, 1:-1]
-        + planes[2][inner] * field[2:, 1:-1]
-        + planes[3][inner] * field[1:-1, :-2]
-        + planes[4][inner] * field[1:-1, 2:]
-    )
-    out[2:-1, 1:-1] += planes[5][2:-1, 1:-1] * field[:-3, 1:-1]
-    return out

@@ -8,7 +8,7 @@ import math
 import time
 
 import numpy as np
-from surrogate.ehl.case import make_case, ScaledCase, UNRESOLVED
+from surrogate.ehl.case import make_case, UNRESOLVED
 from surrogate.ehl.grid import Grid, transfer
 from surrogate.ehl.interface import (
     check_contact,
@@ -149,30 +149,21 @@ def _confirm(search: Search, grid: Grid, outcome: NewtonResult) -> tuple[Grid, N
         if max(nx, ny) > LARGEST_GRID:
             return grid, outcome, False
         settings = replace(settings, nx=nx, ny=ny)
-        finer, refined = _finer(search, replace(case, settings=settings), grid, outcome)
+        fine = replace(case, settings=settings)
+        refined = None
+        if outcome.converged:
+            finer = fine.grid(nx, ny, symmetric=True)
+            problem = fine.problem(finer, speed, fine.shape_heights(finer), fine.order)
+            coarse = transfer(outcome.state, grid, finer)
+            refined = search.solve(finer, problem, coarse, search.limits(rough=False, final=True))
+            search.half = film_and_share(fine, grid, outcome)
+        if refined is None or not refined.converged:  # from cold
+            other = Search(case=fine, deadline=search.deadline)
+            finer, refined = other.smooth(speed, final=True)
+            search.half = other.half
+            search.newton += other.newton
+            search.krylov += other.krylov
         if not refined.converged:
             return grid, outcome, False
         grid, outcome = finer, refined
     return grid, outcome, settings.refine or not outcome.contact.any()
-
-
-def _finer(search: Search, case: ScaledCase, grid: Grid, outcome: NewtonResult) -> GridResult:
-    """Solve on a finer grid, from the coarser one or else from cold."""
-    speed, settings = case.condition.entrainment_speed, case.settings
-    finer = case.grid(settings.nx, settings.ny, symmetric=True)
-    if outcome.converged:
-        problem = case.problem(finer, speed, case.shape_heights(finer), case.order)
-        refined = search.solve(
-            finer,
-            problem,
-            transfer(outcome.state, grid, finer),
-            search.limits(rough=False, final=True),
-        )
-        search.half = film_and_share(case, grid, outcome)
-        if refined.converged:
-            return finer, refined
-    other = Search(case=case, deadline=search.deadline)
-    finer, refined = other.smooth(speed, final=True)
-    search.half = other.half
-    search.newton, search.krylov = search.newton + other.newton, search.krylov + other.krylov
-    return finer, refined

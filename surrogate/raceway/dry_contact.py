@@ -167,7 +167,14 @@ def _descend(
     mean_pressure, ahead, pace = float(pressure.mean()), pressure, 1.0
     for count in range(1, MOST + 1):
         before = pressure
-        pressure = _projected(ahead - slope(ahead) / steepest, mean_pressure, hardness)
+        # The nearest pressures between the bounds with the mean pressure.
+        free = ahead - slope(ahead) / steepest
+        low, high = float(free.min()) - mean_pressure, float(free.max())
+        for _ in range(HALVINGS):
+            shift = 0.5 * (low + high)
+            heavy = np.clip(free - shift, 0.0, hardness).mean() > mean_pressure
+            low, high = (shift, high) if heavy else (low, shift)
+        pressure = np.clip(free - high, 0.0, hardness)
         step = pressure - before
         if count >= LEAST and np.abs(step).sum() < tolerance * mean_pressure * step.size:
             return pressure, count, True
@@ -175,16 +182,6 @@ def _descend(
         pace = 0.5 * (1 + math.sqrt(1 + 4 * last**2))
         ahead = pressure + (last - 1) / pace * step
     return pressure, MOST, False
-
-
-def _projected(pressure: Array, mean_pressure: float, hardness: float) -> Array:
-    """Return the pressures [Pa] nearest to these between the bounds, with the mean pressure."""
-    low, high = float(pressure.min()) - mean_pressure, float(pressure.max())
-    for _ in range(HALVINGS):
-        shift = 0.5 * (low + high)
-        heavy = np.clip(pressure - shift, 0.0, hardness).mean() > mean_pressure
-        low, high = (shift, high) if heavy else (low, shift)
-    return np.clip(pressure - high, 0.0, hardness)
 
 
 def run_in(

@@ -9,7 +9,6 @@ is taken as a point, so that its radius filters nothing.
 
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 import math
 
@@ -74,18 +73,14 @@ def read_all_directions(wave_number: ArrayLike, band: ProfileBand) -> Reading:
 
     """
     square = np.asarray(wave_number, dtype=float) ** 2
-    half = [square * rate / 2 for rate in _rates(band)]
+    short, long = _weakening(band.cutoff_short), _weakening(band.cutoff_long)
+    # The rates [m2] of the three exponentials in the square of the transmission.
+    half = [square * (2 * short + count * long) / 2 for count in (0, 1, 2)]
     height = sum(sign * i0e(one) for sign, one in zip((1.0, -2.0, 1.0), half, strict=True))
     slope = sum(
         sign * (i0e(one) - i1e(one)) for sign, one in zip((1.0, -2.0, 1.0), half, strict=True)
     )
     return Reading(height=np.asarray(height), slope=np.asarray(0.5 * square * slope))
-
-
-def _rates(band: ProfileBand) -> Iterable[float]:
-    """Return the rates [m2] of the three exponentials in the square of the transmission."""
-    short, long = _weakening(band.cutoff_short), _weakening(band.cutoff_long)
-    return (2 * short + count * long for count in (0, 1, 2))
 
 
 def _weakening(cutoff: float) -> float:

@@ -34,7 +34,7 @@ from surrogate.screw.ball_result import (
     converged_balances,
     unloaded_balance,
 )
-from surrogate.screw.ball_traction import Traction, Wrench
+from surrogate.screw.ball_traction import Traction
 
 FIRST_FLOOR, STAGE_RATIOS, STAGE_TOLERANCE = 3.0, (10.0, 3.0, 1.5, math.inf), 0.2
 """Slip floor of the first stage over the helical slip, ratios of floors of following stages, and
@@ -198,31 +198,23 @@ def _newton(problem: BallProblem, start: Iterate, tolerance: float) -> Iterate:
             legal = _legal(problem, unknowns + step)
             status = BalanceStatus.CONVERGED if legal else BalanceStatus.OUT_OF_RANGE
             return unknowns + step, status, steps
-        trial = _search(problem, unknowns, step, jacobian)
-        if trial is None:
+        damping = 1.0
+        while damping >= SMALLEST_DAMPING:
+            trial = unknowns + damping * step
+            if _legal(problem, trial):
+                rubbing = wrenches(problem, trial)
+                left = np.linalg.solve(
+                    jacobian, residual(problem, trial, [wrench.values for wrench in rubbing])
+                )
+                if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
+                    break
+            damping *= 0.5
+        else:  # no step is legal and leaves a shorter one to go
             legal = _legal(problem, unknowns + SMALLEST_DAMPING * step)
             status = BalanceStatus.STALLED if legal else BalanceStatus.OUT_OF_RANGE
             return unknowns, status, steps
-        unknowns, friction = trial
+        unknowns, friction = trial, rubbing
     return unknowns, BalanceStatus.STALLED, steps
-
-
-def _search(
-    problem: BallProblem, unknowns: Array, step: Array, jacobian: Array
-) -> tuple[Array, list[Wrench]] | None:
-    """Return the first damped step that is legal and leaves a shorter one to go, and friction."""
-    damping = 1.0
-    while damping >= SMALLEST_DAMPING:
-        trial = unknowns + damping * step
-        if _legal(problem, trial):
-            friction = wrenches(problem, trial)
-            left = np.linalg.solve(
-                jacobian, residual(problem, trial, [wrench.values for wrench in friction])
-            )
-            if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
-                return trial, friction
-        damping *= 0.5
-    return None
 
 
 def _legal(problem: BallProblem, unknowns: Array) -> bool:

@@ -125,22 +125,6 @@ def read(path: str | Path) -> SurfaceData:
 
 def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
     """Verify the content of a file, called `path` in the sentence of a SurfaceError."""
-    header, arrays = _read_arrays(path, content)
-    stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
-    try:
-        data = _assemble(header, provenance, arrays)
-    except DAMAGE as error:
-        raise SurfaceError(f'{path}: damaged surface, {error}') from None
-    if data.sha256 != stated:
-        raise SurfaceError(
-            f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
-            f'from the stated {str(stated)[:16]}'
-        )
-    _check(path, data)
-    return data
-
-
-def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
     unpacked = 0
     with contextlib.suppress(*DAMAGE), zipfile.ZipFile(io.BytesIO(content)) as archive:
         # A small file may fill the memory; a damaged one is refused when it is read.
@@ -165,7 +149,18 @@ def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arra
             f'{path}: surface format version {version}, this program reads version '
             f'{FORMAT_VERSION}: build it again (ballscrew surface build)'
         )
-    return header, arrays
+    stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
+    try:
+        data = _assemble(header, provenance, arrays)
+    except DAMAGE as error:
+        raise SurfaceError(f'{path}: damaged surface, {error}') from None
+    if data.sha256 != stated:
+        raise SurfaceError(
+            f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
+            f'from the stated {str(stated)[:16]}'
+        )
+    _check(path, data)
+    return data
 
 
 def _assemble(header: dict[str, Any], provenance: Any, arrays: Arrays) -> SurfaceData:

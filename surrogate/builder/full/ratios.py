@@ -167,7 +167,17 @@ def ratios_at(
         heated = np.repeat(stacked, len(hot), axis=4)
     else:
         heated = np.asarray(PchipInterpolator(solved, stacked, axis=4)(hot))
-    loaded = _along_load(heated, grid, nodes)
+    # [field, speed, load, temperature] at the signed loads, each within its piece.
+    sizes, opposing = np.abs(nodes.load), nodes.load >= 0
+    gaps = [0.5 * (low[-1] + high[0]) for low, high in zip(grid.pieces, grid.pieces[1:])]
+    owner, firsts = np.searchsorted(gaps, sizes), np.cumsum([0, *map(len, grid.pieces)])
+    loaded = np.empty((len(heated), len(grid.speeds), len(sizes), len(nodes.temperature)))
+    for place, piece in enumerate(grid.pieces):
+        first, last = firsts[place], firsts[place + 1]
+        for sense, signed in enumerate((opposing, ~opposing)):
+            here = (owner == place) & signed
+            of_load = PchipInterpolator(piece, heated[:, sense, :, first:last], axis=2)
+            loaded[:, :, here] = of_load(np.clip(sizes[here], piece[0], piece[-1]))
     known = np.log(grid.speeds)
     wanted = np.clip(nodes.log_speed, known[0], known[-1])
     stacked_at_nodes = np.empty((len(loaded), *wanted.shape))
@@ -176,18 +186,3 @@ def ratios_at(
         stacked_at_nodes[:, :, j, k] = along(wanted[:, j, k])
     ratios = {name: np.exp(values) for name, values in zip(logs, stacked_at_nodes)}
     return ratios, stacked_at_nodes[-1] > NEXT_TO_A_FAILURE
-
-
-def _along_load(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
-    """Return [field, speed, load, temperature] at the signed loads of the nodes."""
-    sizes, opposing = np.abs(nodes.load), nodes.load >= 0
-    gaps = [0.5 * (low[-1] + high[0]) for low, high in zip(grid.pieces, grid.pieces[1:])]
-    owner, firsts = np.searchsorted(gaps, sizes), np.cumsum([0, *map(len, grid.pieces)])
-    at_loads = np.empty((len(values), len(grid.speeds), len(sizes), len(nodes.temperature)))
-    for place, piece in enumerate(grid.pieces):
-        first, last = firsts[place], firsts[place + 1]
-        for sense, signed in enumerate((opposing, ~opposing)):
-            here = (owner == place) & signed
-            along = PchipInterpolator(piece, values[:, sense, :, first:last], axis=2)
-            at_loads[:, :, here] = along(np.clip(sizes[here], piece[0], piece[-1]))
-    return at_loads
