@@ -218,38 +218,33 @@ def run(plan: Plan) -> int:
         )
         say(*plan.bag.notes)
         remove_report(plan.out)  # the recording of this run would belie an earlier one
-        outcome = _supervise(plan, stop)
+        with free_domain() as domain, contextlib.ExitStack() as stack:
+            os.environ |= confined(domain)
+            node = NodeProcess(plan.params, plan.out / LOG, domain=domain)
+            stack.callback(node.stop)
+            print(
+                f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
+                'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
+                *(f'full solve  {line}' for line in solve_lines(plan, domain)),
+                sep='\n',
+                flush=True,
+            )
+            writer = stack.enter_context(BagWriter(plan.out, RECORDING))
+            supervision = Supervision(plan, node, writer, domain)
+            stack.callback(supervision.close)
+            try:
+                outcome = supervision.carry_out(stop)
+                if not stop.is_set():
+                    outcome = dataclasses.replace(outcome, failures=outcomes.losses(plan, outcome))
+            except RunFailure as failure:
+                outcome = supervision.outcome(str(failure))
+            writer.add_metadata(outcomes.facts(plan, outcome))
     if interrupted:
         say(f'interrupted, recorded so far: {outcome.recording}')
         return SIGNALLED + interrupted[0]
     say(*outcome.failures)
     outcomes.report(plan, outcome)
     return FAILED if outcome.failures else DONE
-
-
-def _supervise(plan: Plan, stop: threading.Event) -> Outcome:
-    with free_domain() as domain, contextlib.ExitStack() as stack:
-        os.environ |= confined(domain)
-        node = NodeProcess(plan.params, plan.out / LOG, domain=domain)
-        stack.callback(node.stop)
-        print(
-            f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
-            'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
-            *(f'full solve  {line}' for line in solve_lines(plan, domain)),
-            sep='\n',
-            flush=True,
-        )
-        writer = stack.enter_context(BagWriter(plan.out, RECORDING))
-        supervision = Supervision(plan, node, writer, domain)
-        stack.callback(supervision.close)
-        try:
-            outcome = supervision.carry_out(stop)
-            if not stop.is_set():
-                outcome = dataclasses.replace(outcome, failures=outcomes.losses(plan, outcome))
-        except RunFailure as failure:
-            outcome = supervision.outcome(str(failure))
-        writer.add_metadata(outcomes.facts(plan, outcome))
-        return outcome
 
 
 def solve_lines(plan: Plan, domain: int) -> list[str]:

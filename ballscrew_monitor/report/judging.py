@@ -285,6 +285,26 @@ class CaseMaker:
         `bag` holds the messages of its inputs, None if they were recorded as events.
 
         """
+        inputs = {}
+        for source in Source:
+            if not is_configured(self._axis, self._values, source):
+                continue
+            prefix, values = f'{self._axis}.{source.name.lower()}', self._values
+            unit = values[f'{prefix}.unit']
+            scalings = scalings_of(self._axis, values, source, self._surface.lead)
+            counts, topic = {}, absolute(values[f'{prefix}.topic'])
+            if bag is not None and topic in bag.topics:
+                counts = {'promised': bag.promised.get(topic), 'present': bag.topics[topic].count}
+            inputs[source] = InputSetting(
+                topic=values[f'{prefix}.topic'],
+                field=values[f'{prefix}.field'],
+                unit=unit if unit in scalings else next(iter(scalings)),
+                scalings=scalings,
+                from_position=unit in POSITION_UNITS,
+                as_feed=unit in LINEAR_UNITS,
+                absent=Bag.absent if bag is None else bag.absent,
+                **counts,
+            )
         survey, history = self._surveyor.result(), None
         if self._history is not None:
             history = self._history.history(
@@ -298,11 +318,7 @@ class CaseMaker:
             axis=self._axis,
             surface=self._surface,
             settings=self._settings,
-            inputs={
-                source: self._setting(source, bag)
-                for source in Source
-                if is_configured(self._axis, self._values, source)
-            },
+            inputs=inputs,
             outcome=outcome,
             survey=survey,
             history=history,
@@ -320,24 +336,6 @@ class CaseMaker:
             rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
         )
         return onset_of_surface(self._surface, None if math.isnan(oil) else oil, zone)
-
-    def _setting(self, source: Source, bag: Bag | None) -> InputSetting:
-        prefix, values = f'{self._axis}.{source.name.lower()}', self._values
-        unit = values[f'{prefix}.unit']
-        scalings = scalings_of(self._axis, values, source, self._surface.lead)
-        counts, topic = {}, absolute(values[f'{prefix}.topic'])
-        if bag is not None and topic in bag.topics:
-            counts = {'promised': bag.promised.get(topic), 'present': bag.topics[topic].count}
-        return InputSetting(
-            topic=values[f'{prefix}.topic'],
-            field=values[f'{prefix}.field'],
-            unit=unit if unit in scalings else next(iter(scalings)),
-            scalings=scalings,
-            from_position=unit in POSITION_UNITS,
-            as_feed=unit in LINEAR_UNITS,
-            absent=Bag.absent if bag is None else bag.absent,
-            **counts,
-        )
 
 
 def judge_log(

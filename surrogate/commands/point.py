@@ -165,7 +165,19 @@ def _point(args: argparse.Namespace) -> int:
     if args.plot:
         prepare(args.plot)
     if args.sensitivity:
-        return _sensitivity(args, screw, lubricant, point)
+        from surrogate.screw.sensitivity import sensitivity_page, sensitivity_record
+
+        progress = Progress(0, 'inputs')  # seconds for each that changes the topography
+        try:
+            record = sensitivity_record(screw, lubricant, point, progress=progress.show)
+        finally:
+            progress.close()
+        show(record, sensitivity_page, json=args.json)
+        if args.plot:
+            from surrogate.screw.figures import draw_sensitivity
+
+            draw_into(args.plot, lambda folder: [draw_sensitivity(folder, record)])
+        return 0
     solution: Any = None
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
@@ -193,25 +205,6 @@ def _check(args: argparse.Namespace) -> None:
         if given is not None and given is not False and args.tier != 'full' and not drawn:
             other = ' or --sensitivity' * (name == 'plot')
             raise InputError(f'--{name.replace("_", "-")} needs --tier full{other}')
-
-
-def _sensitivity(
-    args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
-) -> int:
-    """Show what each input changes; seconds for each that changes the topography."""
-    from surrogate.screw.sensitivity import sensitivity_page, sensitivity_record
-
-    progress = Progress(0, 'inputs')
-    try:
-        record = sensitivity_record(screw, lubricant, point, progress=progress.show)
-    finally:
-        progress.close()
-    show(record, sensitivity_page, json=args.json)
-    if args.plot:
-        from surrogate.screw.figures import draw_sensitivity
-
-        draw_into(args.plot, lambda folder: [draw_sensitivity(folder, record)])
-    return 0
 
 
 def _full(

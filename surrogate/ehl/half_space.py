@@ -156,7 +156,18 @@ def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
     if space.symmetric:
         _rows_to_spectrum_even(space, pressure)
         fft_forward(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
-        _multiply_even(space)
+        # Two real columns as one complex: Z(k) mean + conj Z(-k) half difference.
+        re, im = space.columns[0], space.columns[1]
+        mean, half, place = space.spectrum[0], space.spectrum[1], space.x.place
+        size = place.size
+        for k in range(size // 2 + 1):
+            a, b = place[k], place[(size - k) % size]
+            for j in range(re.shape[1]):
+                ar, ai, br, bi = re[a, j], im[a, j], re[b, j], im[b, j]
+                m, h = mean[a, j], half[a, j]
+                re[a, j], im[a, j] = m * ar + h * br, m * ai - h * bi
+                if a != b:
+                    re[b, j], im[b, j] = m * br + h * ar, m * bi - h * ai
         fft_inverse(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
         _spectrum_to_rows_even(space, out)
     else:
@@ -171,23 +182,6 @@ def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
         _spectrum_to_rows(space, out)
         if space.periodic:
             repeat(out)
-
-
-@njit(cache=True, error_model='numpy')
-def _multiply_even(space: HalfSpace) -> None:
-    """Treat two real columns as one complex: Z(k) mean + conj Z(-k) half difference."""
-    re, im = space.columns[0], space.columns[1]
-    mean, half = space.spectrum[0], space.spectrum[1]
-    place = space.x.place
-    size = place.size
-    for k in range(size // 2 + 1):
-        a, b = place[k], place[(size - k) % size]
-        for j in range(re.shape[1]):
-            ar, ai, br, bi = re[a, j], im[a, j], re[b, j], im[b, j]
-            m, h = mean[a, j], half[a, j]
-            re[a, j], im[a, j] = m * ar + h * br, m * ai - h * bi
-            if a != b:
-                re[b, j], im[b, j] = m * br + h * ar, m * bi - h * ai
 
 
 @njit(cache=True, error_model='numpy')

@@ -38,7 +38,13 @@ def onset_record(
     calibrated the state in which that was done.
 
     """
-    _check_place(lubricant, load, temperature)
+    OperatingPoint(speed=0.0, load=load, temperature=temperature)  # which checks both
+    low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
+    if not low <= temperature <= high:
+        raise InputError(
+            f'temperature is {temperature - ZERO_CELSIUS:g} degC, allowed is '
+            f'{low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC (the range of the oil sheet)'
+        )
     stated = screw.working_load is not None
     opened, states = Contacts.of(screw), {}
     if abs(load) > opened.working_load:
@@ -74,17 +80,6 @@ def onset_record(
         'extrapolated': extrapolated(screw),
         'states': states,
     }
-
-
-def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
-    """Raise InputError for a load [N] or temperature [K] that no point may have."""
-    OperatingPoint(speed=0.0, load=load, temperature=temperature)
-    low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
-    if not low <= temperature <= high:
-        raise InputError(
-            f'temperature is {temperature - ZERO_CELSIUS:g} degC, allowed is '
-            f'{low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC (the range of the oil sheet)'
-        )
 
 
 def extrapolated(screw: Screw) -> list[str]:

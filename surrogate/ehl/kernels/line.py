@@ -43,13 +43,31 @@ def line_factors(
 
     """
     nx, ny = contact.shape
+    k0, k1, m0, m1 = near[0], near[1], near[2], near[3]
+    zero = near.dtype.type(0)
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             kind, q = j % 2, j // 2
-            row = _line_row(by_pressure, by_gap, contact, near, inverse, i, j, sides[kind])
-            c3, c2, c1, c0, cp = row
-            done = bands[kind]
-            l3 = l2 = l1 = near.dtype.type(0)
+            side, done = sides[kind], bands[kind]
+            if contact[i, j]:  # its row at -3 to +1 is c3 to cp
+                side[0, i, q] = side[1, i, q] = side[5, i, q] = zero
+                side[2, i, q] = side[3, i, q] = m1 * inverse
+                side[4, i, q] = m0 * inverse
+                c3 = c2 = zero
+                c1, c0, cp = k1 * inverse, k0 * inverse, k1 * inverse
+            else:
+                h0, h1, h5 = by_gap[0, i, j], by_gap[1, i, j], by_gap[5, i, j]
+                north = by_pressure[4, i, j]
+                side[0, i, q] = h5 * m1
+                side[1, i, q] = h5 * m0 + h1 * m1
+                side[2, i, q] = h5 * m1 + h1 * m0 + h0 * m1
+                side[3, i, q] = h0 * m1
+                side[4, i, q] = h1 * m1 + h0 * m0 + north
+                side[5, i, q] = by_pressure[3, i, j] - north
+                c3, c2 = h5 * k1, h5 * k0 + h1 * k1 + by_pressure[5, i, j]
+                c1 = h5 * k1 + h1 * k0 + h0 * k1 + by_pressure[1, i, j]
+                c0, cp = h1 * k1 + h0 * k0 + by_pressure[0, i, j], h0 * k1 + by_pressure[2, i, j]
+            l3 = l2 = l1 = zero
             if i > 3:
                 l3 = c3 * done[3, i - 3, q]
                 c2 -= l3 * done[4, i - 3, q]
@@ -61,43 +79,7 @@ def line_factors(
                 c0 -= l1 * done[4, i - 1, q]
             done[0, i, q], done[1, i, q], done[2, i, q] = l3, l2, l1
             done[3, i, q] = near.dtype.type(1) / c0
-            done[4, i, q] = near.dtype.type(0) if i == nx - 2 else cp
-
-
-@njit(cache=True, error_model='numpy')
-def _line_row(
-    by_pressure: Array,
-    by_gap: Array,
-    contact: Mask,
-    near: Array,
-    inverse: np.floating,
-    i: int,
-    j: int,
-    sides: Array,
-) -> tuple[np.floating, np.floating, np.floating, np.floating, np.floating]:
-    """Return the row of a node at -3 to +1 in its line [-] and set its `sides`."""
-    k0, k1, m0, m1 = near[0], near[1], near[2], near[3]
-    zero, q = near.dtype.type(0), j // 2
-    if contact[i, j]:
-        sides[0, i, q] = sides[1, i, q] = sides[5, i, q] = zero
-        sides[2, i, q] = sides[3, i, q] = m1 * inverse
-        sides[4, i, q] = m0 * inverse
-        return zero, zero, k1 * inverse, k0 * inverse, k1 * inverse
-    h0, h1, h5 = by_gap[0, i, j], by_gap[1, i, j], by_gap[5, i, j]
-    north = by_pressure[4, i, j]
-    sides[0, i, q] = h5 * m1
-    sides[1, i, q] = h5 * m0 + h1 * m1
-    sides[2, i, q] = h5 * m1 + h1 * m0 + h0 * m1
-    sides[3, i, q] = h0 * m1
-    sides[4, i, q] = h1 * m1 + h0 * m0 + north
-    sides[5, i, q] = by_pressure[3, i, j] - north
-    return (
-        h5 * k1,
-        h5 * k0 + h1 * k1 + by_pressure[5, i, j],
-        h5 * k1 + h1 * k0 + h0 * k1 + by_pressure[1, i, j],
-        h1 * k1 + h0 * k0 + by_pressure[0, i, j],
-        h0 * k1 + by_pressure[2, i, j],
-    )
+            done[4, i, q] = zero if i == nx - 2 else cp
 
 
 @njit(cache=True, error_model='numpy')
