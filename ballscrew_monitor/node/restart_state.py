@@ -196,38 +196,32 @@ class RestartState:
             self._wake.wait(None if again is None else max(again - time.monotonic(), 0.0))
 
     def _write(self) -> None:
-        if self._database is None:
+        database = self._database
+        if database is None:
             return
         try:
-            self._write_into(self._database)
-            self._problem = ''
-        except InputError as error:
-            self._problem = str(error)
-        except Exception as error:  # noqa: BLE001 the thread must live, and what waits must stay
-            known = error if isinstance(error, sqlite3.Error) else getattr(error, 'strerror', None)
-            reason = known or f'{type(error).__name__}: {error}'
-            self._problem = f'{self.folder} {UNWRITABLE}, {reason}'
-
-    def _write_into(self, database: StateDatabase) -> None:
-        if self._stopped:
-            raise InputError(f'{self.folder} is closed')
-        try:
+            if self._stopped:
+                raise InputError(f'{self.folder} is closed')
             if not database.is_open:
                 self._open(database)
             entries, records = self._waiting()
             if entries or records:
                 database.write(entries, records.values())
-        except Exception as error:
-            if not isinstance(error, InputError):  # what it left is read before all else
-                database.let_go()
-            raise
-        written = set(map(id, entries))
-        with self._lock:
-            left = [one for one in self._entries if id(one) not in written]
-            self._entries = deque(left, maxlen=MOST_ENTRIES)
-            for key, one in records.items():
-                if self._changed[key] is one:
-                    del self._changed[key]
+            written = set(map(id, entries))
+            with self._lock:
+                left = [entry for entry in self._entries if id(entry) not in written]
+                self._entries = deque(left, maxlen=MOST_ENTRIES)
+                for key, record in records.items():
+                    if self._changed[key] is record:
+                        del self._changed[key]
+            self._problem = ''
+        except InputError as error:
+            self._problem = str(error)
+        except Exception as error:  # noqa: BLE001 the thread must live, and what waits must stay
+            database.let_go()  # what it left is read before all else
+            known = error if isinstance(error, sqlite3.Error) else getattr(error, 'strerror', None)
+            reason = known or f'{type(error).__name__}: {error}'
+            self._problem = f'{self.folder} {UNWRITABLE}, {reason}'
 
     def _open(self, database: StateDatabase) -> None:
         records = database.load()
