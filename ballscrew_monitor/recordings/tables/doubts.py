@@ -7,7 +7,7 @@ A first map asks by the same sentences for which a log is refused whose map leav
 
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import dataclasses
 from pathlib import Path
 
@@ -216,6 +216,7 @@ def doubts_of_motion(
 ) -> Iterator[str]:
     """Yield what is unclear of the motion of each axis, and of the inputs beside it."""
     groups = [{*each.group.columns} for each in times]
+    assumed = {one.key for one in mapping.assumptions}
     for axis in mapping.axes:
         motion = motion_of(axis).name
         for kind in filter(axis.columns.__contains__, MOTOR):
@@ -227,7 +228,7 @@ def doubts_of_motion(
                     'map, or none'
                 )
     for axis in mapping.axes:
-        yield from _doubts_of_signs(axis, table, turns)
+        yield from _doubts_of_signs(axis, table, turns, assumed)
     rows: dict[str, Array] = {}
     for axis in mapping.axes if mapping.time else ():
         speed = axis.columns.get('speed')
@@ -247,7 +248,9 @@ def doubts_of_motion(
             )
 
 
-def _doubts_of_signs(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> Iterator[str]:
+def _doubts_of_signs(
+    axis: AxisMap, table: Table, turns: Mapping[str, float], assumed: Collection[str]
+) -> Iterator[str]:
     """Yield what is unclear of a motion, or a torque of which the load is made, by their signs."""
 
     def are_together(one: Column, other: Column) -> bool:
@@ -262,7 +265,8 @@ def _doubts_of_signs(axis: AxisMap, table: Table, turns: Mapping[str, float]) ->
             yield unclear_direction(axis.name, speed.name, position.name)
     if kind and axis.load_from and are_together(axis.columns[kind], motion):
         column = axis.columns[kind]
-        if not column.magnitude and not column.is_scaled:
+        is_scaled = column.is_scaled and f'{axis.name}.{kind}.scale' not in assumed
+        if not column.magnitude and not is_scaled:
             data = data or _sampled(axis, table, turns)
             slope = data['speed'] if 'speed' in data else slopes(data['position'])
             if brakes_always(data[kind], slope):

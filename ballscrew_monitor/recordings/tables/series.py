@@ -31,6 +31,7 @@ from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, 
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
+from ballscrew_monitor.recordings.tables.stated_rate import doubts_of_rate, other_period
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, run_offsets
 from ballscrew_monitor.recordings.tables.times import groups_of, in_step, joined, line, Rows, Times
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
@@ -192,7 +193,8 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     for name in mapping.time_columns:
         if name in table.left_out:
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
-    for doubt in doubts_of_columns(mapping, table):
+    of_rate = doubts_of_rate(mapping, table) if mapping.time is None else ()
+    for doubt in itertools.chain(of_rate, doubts_of_columns(mapping, table)):
         raise InputError(f'log {path}: {doubt}')
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
     moving = [_moving(axis, table) for axis in axes]
@@ -205,6 +207,8 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     _look_at_slopes(held, turns, times)
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
+    period = next(one.usual_period for one in times if one.group.is_motion)
+    notes += [f'log {path}: {why}' for why in [other_period(source.head, mapping, period)] if why]
     unread, more_rows = table.source.unread(columns), table.source.rows_alike(columns)
     return Series(
         count=sum(one.count for one in times),

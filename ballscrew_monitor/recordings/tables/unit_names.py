@@ -28,7 +28,9 @@ _LONGEST = 4  # words of a unit, such as m per min in camel case
 _PREFIX = re.compile(r'(?<![^\W\d_])(?:da|[munkMGhcdµμ])$')
 """A prefix of the SI that begins a word: what follows is no unit by itself, as N in daN."""
 _BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
-_OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
+_OTHER_WORDS = frozenset(
+    'min rev rad radian radians deg degree degrees grad nm ma amp amps'.split()
+)
 _ALIASES = {
     'mm': ('millimeter', 'millimetre'),
     'mm/s': ('mmps', 'mm/sec', 'millimeter/second'),
@@ -40,6 +42,8 @@ _ALIASES = {
         'revolution/minute',
     ),
     'rad/s': ('radps', 'rad/sec'),
+    'rad': ('radian', 'radians'),
+    'deg': ('°', 'degree', 'degrees', 'grad'),
     'N': ('newton', 'newtons'),
     'N m': ('nm', 'n.m', 'n*m', 'n·m', 'newton/meter'),
     'degC': ('c', '°c', 'deg/c', '°/c', 'grad/c', 'celsius'),
@@ -60,10 +64,14 @@ _CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
         'ips': ('mm/s', 25.4),
         'cm/s': ('mm/s', 10.0),
         'um/s': ('mm/s', 1e-3),
-        'deg/s': ('rev/min', 1.0 / 6.0),
-        'deg/min': ('rev/min', 1.0 / 360.0),
+        **dict.fromkeys(('deg/s', 'deg/sec', 'degps', '°/s', 'grad/s'), ('rev/min', 1.0 / 6.0)),
+        **dict.fromkeys(('degree/s', 'degrees/s', 'degree/second'), ('rev/min', 1.0 / 6.0)),
+        **dict.fromkeys(('deg/min', '°/min', 'grad/min'), ('rev/min', 1.0 / 360.0)),
+        **dict.fromkeys(('rad/min',), ('rad/s', 1.0 / 60.0)),
+        'mrad/s': ('rad/s', 1e-3),
         'rev/s': ('rev/min', 60.0),
         'rps': ('rev/min', 60.0),
+        'u/s': ('rev/min', 60.0),
     },
     'position': {
         'in': ('mm', 25.4),

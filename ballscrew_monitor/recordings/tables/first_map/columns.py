@@ -25,6 +25,7 @@ from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.sources import source_of
+from ballscrew_monitor.recordings.tables.stated_rate import twin_times
 from ballscrew_monitor.recordings.tables.unit_names import words_of
 from ballscrew_monitor.recordings.words import listed, short, Shown
 import numpy as np
@@ -48,6 +49,7 @@ class Columns:
     that may be; `joints` are named by the cells of others. `marks` says what a map says of the
     marks of each input, `mark_cells` the cells of these. `data` are the first rows, `sampled` rows
     that span the log, since signs may be seen late, and `extremes` the least and the most.
+    `twins` are of one name and rise evenly.
     `not_times` says why columns are no time, `lost` which of an axis hold no number; `doubts` are
     the decimal sign or the `order` of dates that the log does not show, `unclear` says so.
 
@@ -128,6 +130,8 @@ class Columns:
         """Choose the columns of the time and of each axis by their names."""
         texts = self._texts()
         named = [read_name(name, texts.get(name, '')) for name in self.source.names()]
+        twins = twin_times(self.source)
+        self.twins = {*twins}
         self.times = [
             one
             for at, one in enumerate(named)
@@ -136,6 +140,7 @@ class Columns:
             or self.unit_of_program(one)
             or (at == 0 and not one.kind)
             or self.stands_unnamed(one)
+            or one.column in twins
         ]
         self.named = [one for one in named if one not in self.times or one.kind == 'time']
         self.by_axis = names.by_axis([one for one in self.named if one.kind != 'time'])
@@ -301,8 +306,14 @@ def _unnamed(path: Path, head: Head) -> str:
     rate = f'{1.0 / head.period:g}' if math.isfinite(head.period) else '(rows in a second)'
     epoch = f"epoch: '{EPOCH}'"
     by_column = f' or `time: {{column: column 1, unit: s, {epoch}}}`' if count > 1 else ''
+    loaded = (
+        f'; of a force beside `load: {{column: column {count}, unit: N}}`, of a torque `torque: '
+        f'{{column: column {count}, unit: N m}}, load: {{from: torque}}`'
+        if count > 2
+        else ''
+    )
     return (
         f'log {path}: no line names its columns, of which it has {held}: a map calls them by '
         f'their numbers, such as `axes: {{x: {{position: {{column: column {min(count, 2)}, unit: '
-        f'mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: {rate}, {epoch}}}`{by_column}'
+        f'mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: {rate}, {epoch}}}`{by_column}{loaded}'
     )

@@ -16,11 +16,12 @@ from surrogate.surface import find_surface, Surface
 from surrogate.units import MILLI, TURN
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
-TORQUE_CONSTANT = 0.1  # [N m/A]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 SAME_LEAD = 0.01  # part by which a lead out of a log may miss a usual one
 LEADS = (1e-3, 0.1)  # [m] of ball screws
+OF_THE_MOTOR = frozenset('motor mot drive servo antrieb moteur motore'.split())
+_TURNING_UNITS = {*conversions.ROTARY_POSITION_UNITS, *conversions.ROTARY_SPEED_UNITS}
 FORCE = (
     '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
     'accelerates the axis, count as load'
@@ -152,15 +153,19 @@ def _set_load(draft: Draft, name: str) -> None:
 
 
 def _state_motor(draft: Draft, name: str, kind: str) -> None:
-    """Assume what makes a torque of a current; ask for the rated torque of one in %."""
+    """Ask for what makes a torque of a current, or of one in %, unless the head states it."""
+    column, plate = draft.log.axes[name][kind].column, 'it is on the plate of the motor'
     if draft.unit(name, kind) != RATED:
-        why = 'the log does not say it; it is on the plate of the motor'
-        _set_by_head(draft, name, 'torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+        key, why = 'torque_constant_Nm_per_A', f', the torque at the screw of 1 A: {column} is '
+        stated = draft.log.head.machine.get(key)
+        if stated:
+            _set_by_head(draft, name, key, math.nan, '')
+            return
+        draft.ask(f'{name}.{key}', f'{why}the current that tells the load, and {plate}')
         return
     draft.ask(
         f'{name}.torque_rated_Nm',
-        f', the torque at the screw of 100 %: {draft.log.axes[name][kind].column} is in % of it, '
-        'and it is on the plate of the motor',
+        f', the torque at the screw of 100 %: {column} is in % of it, and {plate}',
     )
 
 
@@ -170,10 +175,7 @@ def _ask_for_gear(draft: Draft, name: str) -> None:
     if draft.log.head.machine['gear'].value == 1.0:
         return
     for kind in filter(used.__contains__, (*MOTION, *MOTOR)):
-        turns = draft.unit(name, kind) in (
-            *conversions.ROTARY_POSITION_UNITS,
-            *conversions.ROTARY_SPEED_UNITS,
-        )
+        turns = draft.unit(name, kind) in _TURNING_UNITS
         makes_load = kind in MOTOR and used.get('load', {}).get('from') == kind
         if turns or makes_load or 'load' not in used:
             draft.ask(
@@ -184,11 +186,15 @@ def _ask_for_gear(draft: Draft, name: str) -> None:
 
 
 def _assume_no_gear(draft: Draft, name: str) -> None:
-    """Assume of the turning speed of a motor, without a position, that the screw turns so."""
-    speed = draft.used[name].get('speed')
-    if speed is None or 'position' in draft.used[name] or 'scale' in speed:
-        return
-    turns = draft.unit(name, 'speed') in conversions.ROTARY_SPEED_UNITS
-    if turns and 'motor' in words_of(speed['column']):
-        why = f'{speed["column"]} is of the motor, taken to drive the screw without a gear'
-        draft.assume(f'{name}.speed.scale', 1.0, why)
+    """Assume of what names the motor that the screw turns so, where nothing tells a gear."""
+    used, turning = draft.used[name], _TURNING_UNITS
+    motion = [kind for kind in MOTION if kind in used]
+    if draft.log.head.factors:
+        return  # each scale is asked for
+    alone = all(draft.unit(name, kind) in turning for kind in motion)
+    for kind in [*(motion if alone else []), *({'torque'} & set(used))]:
+        of_motor = OF_THE_MOTOR & set(words_of(used[kind]['column']))
+        if of_motor and 'scale' not in used[kind] and draft.unit(name, kind) != RATED:
+            column = used[kind]['column']
+            why = f'{column} is of the motor, taken to drive the screw without a gear'
+            draft.assume(f'{name}.{kind}.scale', 1.0, why)

@@ -117,7 +117,8 @@ class OwnTimes:
     def say(self, name: str, kind: str) -> None:
         """Let the map say that an input has another time than the first, or ask if it may have."""
         draft, place = self._draft, self._draft.used[name][kind]
-        column, time = place['column'], str(self._time.stated.get('column', ''))
+        column, main = place['column'], self._time.column
+        time = main.column if main else ''
         own = self.of_inputs.get(column, time)
         first = draft.used[name].get('speed') or draft.used[name].get('position', place)
         if fault := self._log.source.fault_of_length(column, own or first['column']):

@@ -3,7 +3,6 @@
 """The column of the time of a log, its unit and its begin; or why none is."""
 
 from collections.abc import Iterator
-import contextlib
 import datetime as dt
 import math
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS, LINEAR_SPEED_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.cells import Array, Cells
+from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
     FIRST_YEAR,
@@ -30,8 +29,9 @@ from ballscrew_monitor.recordings.tables.other_tables import (
     TAKE_OUT,
 )
 from ballscrew_monitor.recordings.tables.quantities import MOTION, SCALES
+from ballscrew_monitor.recordings.tables.stated_rate import first_numbers
 from ballscrew_monitor.recordings.tables.time_gate import OF_A_CLOCK, RATE, TimeGate
-from ballscrew_monitor.recordings.tables.unit_names import words_of
+from ballscrew_monitor.recordings.tables.unit_names import unit_of, words_of
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 import polars as pl
@@ -97,7 +97,8 @@ class TimeColumn:
     def _is_surely_time(self, one: Named, values: Array) -> bool:
         """Return True if a column that no name calls a time is one by its numbers or its head."""
         log, known = self._log, values[np.isfinite(values)]
-        if len(known) < 2 or one.column in log.head.labelled or log.unit_of_program(one):
+        sure = one.column in log.head.labelled or one.column in log.twins
+        if len(known) < 2 or sure or log.unit_of_program(one):
             return len(known) > 1
         return one.column in log.timed or bool(estimates.epoch_units(known))
 
@@ -156,7 +157,8 @@ class TimeColumn:
         log = self._log
         if one.column in log.timed:
             return 's', ''
-        stated = log.unit_of_program(one) or one.unit
+        by_name = unit_of(names.base_of(one.column), 'time') if one.column in log.twins else ''
+        stated = log.unit_of_program(one) or one.unit or by_name
         first, rising = values[:1], np.diff(np.unique(values))
         step = float(np.median(rising)) if len(rising) else math.nan
         epochs = estimates.epoch_units(values) if len(values) > 1 else []
@@ -193,6 +195,11 @@ class TimeColumn:
                 if 0.95 / RATE <= step * factor <= 1.0 / estimates.SLOWEST
             ]
             told = f': in {", in ".join(rates)}' if rates else ''
+            if math.isfinite(period := self._log.head.period):
+                told += (
+                    f'; the head states a period of {period:.4g} s: unit s, and a scale of '
+                    f'{period / step:.4g} makes of them'
+                )
             self._draft.unstated.append(
                 f'state time.unit in the map: column {one.column} states none that is known; its '
                 f'rows are {step:.3g} apart, which may be of any{told}'
@@ -208,7 +215,20 @@ class TimeColumn:
         if unit:
             self.unit = SCALES[unit][0]
             self.step, self.times = step * self.unit, values * self.unit
-        return {'column': one.column} | ({} if why else {'unit': unit or None})
+        column = None if unit and self._is_denied(one.column) else one.column
+        return {'column': column} | ({} if why else {'unit': unit or None})
+
+    def _is_denied(self, column: str) -> bool:
+        """Return True, and let the map name the time, if the head states another rate than it."""
+        period = self._log.head.period
+        if math.isnan(period) or abs(self.step / period - 1.0) <= estimates.NEAR:
+            return False
+        self._draft.unstated.append(
+            f'state time.column: {column} in the map, by which the rows are {self.step:.4g} s '
+            f'apart, or time.rate_Hz: {1.0 / period:.6g} instead of column and unit: the head '
+            f'states a period of {period:.4g} s'
+        )
+        return True
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
@@ -290,20 +310,14 @@ class TimeColumn:
 
     def _rising(self) -> Iterator[str]:
         """Yield which columns may be a time by their first cells, though not by their names."""
-        log, head = self._log, self._log.source.first_rows()
-        for one in log.named:
-            if one.column in log.data:
-                continue
-            cells = Cells(log.path, one.column)
-            with contextlib.suppress(InputError):
-                cells.add(head[one.column])
-                values = cells.reading().numbers(head[one.column])
-                if len(values) > 1 and (np.diff(values) > 0.0).all():
-                    cell = short(repr(head[one.column][0]))
-                    yield (
-                        f'column {short(repr(one.column))} rises from {cell} in row '
-                        f'{log.first_row} on'
-                    )
+        log = self._log
+        others = [one.column for one in log.named if one.column not in log.data]
+        for name, values in first_numbers(log.source, others).items():
+            if len(values) > 1 and (np.diff(values) > 0.0).all():
+                yield (
+                    f'column {short(repr(name))} rises from {values[0]:.12g} in row '
+                    f'{log.first_row} on'
+                )
 
 
 def row_step(times: Array) -> float:

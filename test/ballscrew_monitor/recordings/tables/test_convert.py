@@ -62,6 +62,7 @@ def content_of(log, rate=10.0):
                 axis[kind]['unit'] = axis[kind]['unit'] or unit
         if 'unit' in axis.get('current', {}):
             axis['current'] |= {'unit': 'A', 'magnitude': False}
+            axis['torque_constant_Nm_per_A'] = 0.1
     if 'rate_Hz' in content['time']:
         content['time']['rate_Hz'] = rate
     return content
@@ -248,6 +249,7 @@ class Shown:
 def small_blocks(monkeypatch):
     """Let tables be read in blocks of 32 rows; return how many were numbers at a time."""
     monkeypatch.setattr(sources, 'BLOCK', 32)
+    monkeypatch.setattr(sources, 'LINES', 32)
     lengths, numbers = [], cells.Reading.numbers
 
     def counted(reading, block):
@@ -426,6 +428,7 @@ def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path,
         assert says('blank_rate') in capsys.readouterr().err
     stated = captured.out.replace('rate_Hz: null', 'rate_Hz: 10').replace('unit: null', 'unit: A')
     stated = stated.replace('magnitude: null', 'magnitude: false')
+    stated = stated.replace('Nm_per_A: null', 'Nm_per_A: 0.1')
     mapping.write_text(stated)
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
     assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out

@@ -162,6 +162,7 @@ def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
     # A steady current may be one without a sign.
     assert content['axes']['x']['current'].pop('magnitude') is None
     content['axes']['x']['current']['magnitude'] = False
+    content['axes']['x']['torque_constant_Nm_per_A'] = 0.2
     series = read_series(path, make_map(content))
     (block,) = [rows for (rows,) in series.blocks()]
     np.testing.assert_allclose(np.diff(block.stamps), STEP * 1e9, atol=1e3)

@@ -18,6 +18,7 @@ TIME = np.arange(200) / 50.0
 SPEED = 100.0 * np.sin(TIME)
 TURNING = 2.0 * np.sin(TIME * 2.0)  # of the screw in a second
 PLACE = 3.0 - np.cos(TIME * 2.0)  # the turns that these are
+SQUARE = np.repeat([1.0, -1.0, 1.0, -1.0], 200)  # steady both ways
 
 CONSTANT = 'torque_constant_Nm_per_A'
 
@@ -38,15 +39,18 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
         'speed': {'column': 'X1_ActualVelocity'},
         'position': {'column': 'X1_ActualPosition'},
         'current': {'column': 'X1_CurrentFeedback', 'unit': None, 'magnitude': None},
+        CONSTANT: None,
     }
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (*map(says, ('current_x', 'sign_x', 'current_y', 'state_rate')),)
+    assert made.unstated == (
+        *map(says, ('current_x', 'sign_x', 'constant_x')),
+        *map(says, ('current_y', 'constant_y', 'state_rate')),
+    )
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
-    assert assumed['x.torque_constant_Nm_per_A']['value'] > 0
     assert all(entry['reason'] for entry in assumed.values())
     assert any('spindle' in note for note in made.notes)
     assert any('axis z: the load is not known' in note for note in made.notes)
@@ -54,6 +58,7 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     refused('blank_rate', make_map, made.content)
     for name in ('x', 'y'):
         axes[name]['current'] |= {'unit': 'A', 'magnitude': False}
+        axes[name][CONSTANT] = 0.2
     assert make_map(made.content | {'time': {'rate_Hz': 10.0}}).rate == 10.0
 
 
@@ -693,7 +698,7 @@ def test_an_axis_in_brackets_is_no_unit(guessed):
     made = guessed(columns | {'TCMD(X)(A)': SPEED}).content
     axis = made['axes']['x']
     assert made['assumed']['x.position.unit']['value'] == 'mm'
-    assert axis.pop('lead_mm') is None
+    assert axis.pop('lead_mm') is axis.pop(CONSTANT) is None
     assert {kind: one.get('unit') for kind, one in axis.items()} == {
         'speed': 'rev/min',
         'position': None,
@@ -1015,11 +1020,34 @@ def test_few_or_many_or_common_numbers_stand_for_themselves(mark, count, write_c
     ],
 )
 def test_the_speed_of_a_motor_is_said_to_be_that_of_the_screw(name, position, asked, guessed):
+    """The position of the table tells a gear by the lead."""
     columns = {'t_s': TIME, name: 60.0 * TURNING, 'x_force_N': SPEED}
     columns |= {'x_pos_mm': 10.0 * PLACE} if position else {}
     assumed = guessed(columns, form='{:.9g}').content['assumed']
     assert ('x.speed.scale' in assumed) is asked
     assert not asked or assumed['x.speed.scale']['value'] == 1.0
+
+
+def test_all_that_names_the_motor_is_assumed_to_be_of_the_screw(guessed):
+    """A gear of 2 in the file of a drive: none of its signals is of the table."""
+    columns = {'t_s': TIME, 'X motor speed [rpm]': 120.0 * TURNING}
+    columns |= {'X motor position [deg]': 720.0 * PLACE, 'X motor torque [Nm]': SPEED}
+    made = guessed(columns, form='{:.9g}')
+    kinds = ('speed', 'position', 'torque')
+    assert {kind: made.content['assumed'][f'x.{kind}.scale']['value'] for kind in kinds} == (
+        dict.fromkeys(kinds, 1.0)
+    )
+    assert {column.scale for column in make_map(made.content).axes[0].columns.values()} == {1.0}
+
+
+def test_an_assumed_gear_leaves_the_sign_of_a_torque_in_doubt(write_csv, refused, tmp_path):
+    """A torque against all motion is asked for in a log that is read by the map of another."""
+    path, torque = tmp_path / 'log.csv', 'X motor torque [Nm]'
+    columns = {'t_s': np.arange(800) / 50.0, 'X speed [mm/s]': 50.0 * SQUARE, torque: SQUARE}
+    mapping = make_map(guess(write_csv(path, columns)).content)
+    assert mapping.axes[0].columns['torque'].scale == 1.0
+    write_csv(path, columns | {torque: -SQUARE})
+    refused('brakes', read_series, path, mapping)
 
 
 def test_a_scope_that_writes_a_time_before_each_signal_leaves_no_time_idle(tmp_path):

@@ -208,10 +208,11 @@ def test_one_look_is_enough_for_a_log_that_is_clear(tmp_path, monkeypatch):
         sources.Source, 'first_rows', lambda source: looks.append(source) or plain(source)
     )
     axes = {'x': {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}}
-    mapping = make_map({'time': {'rate_Hz': 10.0, 'epoch': '2026-01-01'}, 'axes': axes})
-    read_series(log_of(tmp_path, {'v': ['5.400', '12.5'], 'n': ['1,5', '2']}), mapping)
+    time = {'t': ['1', '2']}
+    mapping = make_map({'time': {'column': 't', 'unit': 's', 'epoch': '2026-01-01'}, 'axes': axes})
+    read_series(log_of(tmp_path, time | {'v': ['5.400', '12.5'], 'n': ['1,5', '2']}), mapping)
     assert not looks
-    read_series(log_of(tmp_path, {'v': ['5.400', '5.500'], 'n': ['1', '0.5']}), mapping)
+    read_series(log_of(tmp_path, time | {'v': ['5.400', '5.500'], 'n': ['1', '0.5']}), mapping)
     assert len(looks) == 1
 
 

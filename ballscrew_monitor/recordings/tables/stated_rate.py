@@ -1,0 +1,142 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rows at a rate that a map states, and what the table itself says of their times beside it.
+
+A rate closes up the gap that lost samples leave. It puts values into one row that have times of
+their own. Columns that count samples and columns of times show both.
+
+"""
+
+from collections.abc import Collection, Iterator
+import contextlib
+import dataclasses
+import itertools
+import math
+
+from ballscrew_monitor.recordings.tables.cells import Array, Cells
+from ballscrew_monitor.recordings.tables.estimates import NEAR
+from ballscrew_monitor.recordings.tables.heads import Head
+from ballscrew_monitor.recordings.tables.mapping import TableMap
+from ballscrew_monitor.recordings.tables.names import base_of, read_name
+from ballscrew_monitor.recordings.tables.read import Table
+from ballscrew_monitor.recordings.tables.sources import Source
+from ballscrew_monitor.recordings.words import short
+import numpy as np
+import polars as pl
+from surrogate.files import InputError
+
+MOSTLY = 0.9  # of the steps of a counter are 1
+USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
+INSTEAD = 'in the map instead of `rate_Hz`'
+
+
+def first_numbers(source: Source, names: Collection[str]) -> dict[str, Array]:
+    """Return the numbers in the first rows of those columns that hold some."""
+    cells = source.first_rows() if names else pl.DataFrame()
+    found = {}
+    for name in names:
+        column = Cells(source.path, name, first_row=source.head.first)
+        with contextlib.suppress(InputError):
+            column.add(cells[name])
+            found[name] = column.reading().numbers(cells[name])
+    return found
+
+
+def twin_times(source: Source) -> dict[str, Array]:
+    """Return columns of one name that rise evenly, as the times of several groups do."""
+    names = source.names()
+    bases = [base_of(name) for name in names]
+    twins = [
+        name
+        for name, base in zip(names, bases, strict=True)
+        if bases.count(base) > 1 and read_name(name).kind in ('', 'time')
+    ]
+    found = {name: one for name, one in first_numbers(source, twins).items() if _is_even(one)}
+    held = [base_of(name) for name in found]
+    return {name: one for name, one in found.items() if held.count(base_of(name)) > 1}
+
+
+def _is_even(values: Array) -> bool:
+    """Return True if the known numbers of a column rise evenly."""
+    steps = np.diff(values[np.isfinite(values)])
+    least, most = (part * float(np.median(steps)) for part in USUAL) if len(steps) else (0.0, 0.0)
+    return least > 0.0 and bool(((steps >= least) & (steps <= most)).all())
+
+
+def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
+    """Yield why the rows of a table are not at the equal distances that a map states."""
+    source = table.source
+    torn, used = dataclasses.replace(source.short), {*mapping.columns}
+    others = first_numbers(source, [name for name in source.names() if name not in used])
+    counter = next((name for name, values in others.items() if _counts_samples(values)), '')
+    place = f'`time: {{column: {counter}, unit: s, scale: {1.0 / mapping.rate:.9g}}}` {INSTEAD}'
+    if counter and (jump := _jump(source, counter)):
+        row, before, after = jump
+        yield (
+            f'column {short(repr(counter))} counts the samples, and goes from {before:.12g} to '
+            f'{after:.12g} in row {row}, which rows at equal distances close up: state {place}'
+        )
+    last = table.first_row + table.rows - 1
+    if 0 < torn.cells < len(source.head.names) and torn.first + torn.count - 1 < last:
+        yield (
+            f'row {torn.first} holds {torn.cells} of {len(source.head.names)} cells, and rows '
+            'follow it: samples may be missing there, which rows at equal distances close up: '
+            + (f'state {place}' if counter else f'name a time as `column` {INSTEAD}, or split the')
+            + ' log there' * (not counter)
+        )
+    yield from _of_twins(mapping, source)
+
+
+def _counts_samples(values: Array) -> bool:
+    """Return True if values are whole numbers of which most are the next after the one before."""
+    steps = np.diff(values[np.isfinite(values)])
+    whole = bool((values[np.isfinite(values)] % 1.0 == 0.0).all())
+    return whole and len(steps) > 1 and float(np.mean(steps == 1.0)) >= MOSTLY
+
+
+def _jump(source: Source, counter: str) -> tuple[int, float, float] | None:
+    """Return the first row in which a counter is not the next number, with that before and it."""
+    row, last = source.head.first, math.nan
+    for block in source.blocks([counter]):
+        cells = block[counter].cast(pl.Float64, strict=False).to_numpy()
+        places = np.flatnonzero(np.isfinite(cells))
+        values = np.append(last, cells[places])
+        jumps = np.flatnonzero(np.diff(values) != 1.0)
+        jumps = jumps[np.isfinite(values[jumps])]
+        if len(jumps):
+            at = int(jumps[0])
+            return row + int(places[at]), float(values[at]), float(values[at + 1])
+        row, last = row + len(cells), float(values[-1])
+    return None
+
+
+def _of_twins(mapping: TableMap, source: Source) -> Iterator[str]:
+    """Yield what is wrong if inputs stand behind different times of one name."""
+    twins, names = twin_times(source), source.names()
+    held: dict[str, str] = {}
+    for axis in mapping.axes:
+        for kind, column in axis.columns.items():
+            before = [name for name in names[: names.index(column.name)] if name in twins]
+            if before:
+                held.setdefault(before[-1], f'axes.{axis.name}.{kind}')
+    for name, other in itertools.pairwise(held):
+        first, later = twins[name], twins[other]
+        if base_of(name) == base_of(other) and not np.array_equal(first, later, equal_nan=True):
+            yield (
+                f'columns {short(repr(name))} and {short(repr(other))} rise evenly, as times of '
+                f'two groups do, and begin with {first[0]:.12g} and {later[0]:.12g}, while rows '
+                f'at equal distances have one time: state `time: {{column: {name}, unit: ...}}` '
+                f'{INSTEAD}, and `time: {other}` below {held[other]}'
+            )
+
+
+def other_period(head: Head, mapping: TableMap, period: float) -> str:
+    """Return in a sentence how rows by a map differ from the period [s] of a head, if they do."""
+    if not math.isfinite(head.period) or abs(period / head.period - 1.0) <= NEAR:
+        return ''
+    key = 'time.rate_Hz' if mapping.time is None else 'time.column'
+    return (
+        f'the head states a period of {head.period:.4g} s, the rows are {period:.4g} s apart by '
+        f'{key} of the map, which decides'
+    )

@@ -1,0 +1,128 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rows at a rate that a map states, in files that say otherwise.
+
+Lines of LinuxCNC halsampler begin with the number of the sample where `-t` asks for it, and tell
+of lost samples by a line `overrun`, behind which the numbers go on with those that were lost.
+
+"""
+
+import math
+
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+import numpy as np
+import pytest
+
+RATE, COUNT = 100.0, 400
+TIME = np.arange(COUNT) / RATE
+SPEED = 90.0 * np.sin(math.tau * TIME / 4.0)
+EPOCH = '2026-01-05T08:00:00Z'
+
+
+def sampler(path, *, numbers, lost=0, overrun=False, at=150):
+    """Write speeds as a sampler does, of which some are lost before the row `at`."""
+    kept = [one for one in range(COUNT) if not at <= one < at + lost]
+    lines = [f'{one} ' * numbers + f'{SPEED[one]:.6f} 1.700000 ' for one in kept]
+    if overrun:
+        lines.insert(at, 'overrun')
+    path.write_text('\n'.join(lines) + '\n')
+    return path
+
+
+def by_rate(place, **time):
+    axis = {'lead_mm': 10.0, 'speed': {'column': f'column {place}', 'unit': 'mm/s'}}
+    return make_map({'time': {'epoch': EPOCH} | (time or {'rate_Hz': RATE}), 'axes': {'x': axis}})
+
+
+@pytest.mark.parametrize('overrun', [False, True])
+def test_samples_that_a_counter_shows_to_be_lost_are_not_closed_up(overrun, tmp_path, refused):
+    path = sampler(tmp_path / 'log.txt', numbers=True, lost=50, overrun=overrun)
+    with refused('lost', row=152 if overrun else 151):
+        read_series(path, by_rate(2))
+    series = read_series(path, by_rate(2, column='column 1', unit='s', scale=1.0 / RATE))
+    (rows,) = next(series.blocks())
+    times = (rows.stamps - rows.stamps[0]) / 1e9
+    np.testing.assert_allclose(times[149:151], [1.49, 2.0], atol=1e-9)
+    np.testing.assert_allclose(
+        rows.columns['x.speed'], np.interp(times, TIME, SPEED) * math.tau / 10.0, atol=1e-4
+    )
+
+
+def test_a_line_of_lost_samples_without_a_counter_is_no_sample(tmp_path, refused):
+    path = sampler(tmp_path / 'log.txt', numbers=False, lost=50, overrun=True)
+    refused('overrun', read_series, path, by_rate(1))
+
+
+def test_a_row_that_is_cut_off_at_the_end_closes_up_nothing(tmp_path):
+    path = sampler(tmp_path / 'log.txt', numbers=True)
+    path.write_text(path.read_text() + '400\n')
+    assert read_series(path, by_rate(2)).count == COUNT
+
+
+def groups(path, name, *, shift, step=1.0 / RATE):
+    """Write a speed and a force behind times of their own, under one name."""
+    force = 900.0 * np.cos(math.tau * (TIME + shift) / 4.0)
+    times = np.arange(COUNT) * step
+    later = times + shift * RATE * step
+    lines = [
+        f'{one:.6g};{speed:.4f};{other:.6g};{load:.3f}'
+        for one, speed, other, load in zip(times, SPEED, later, force, strict=True)
+    ]
+    path.write_text('\n'.join([f'{name};X speed [mm/s];{name};X force [N]', *lines]) + '\n')
+    return path
+
+
+@pytest.mark.parametrize('name', ['X', 'X_Value', 'Sample', 't', 'Time', 'Zeit', 'ms'])
+def test_two_groups_whose_times_have_one_name_are_not_put_into_one_row(name, tmp_path, refused):
+    step = {'Sample': 1.0, 'ms': 1e3 / RATE}.get(name, 1.0 / RATE)
+    path = groups(tmp_path / 'log.csv', name, shift=0.5, step=step)
+    content = guess(path).content
+    assert content['time']['column'] == name
+    assert content['axes']['x']['load']['time'] == f'{name}_duplicated_0'
+    inputs = {kind: dict(content['axes']['x'][kind]) for kind in ('speed', 'load')}
+    inputs['load'].pop('time')
+    stated = content | {'time': {'rate_Hz': RATE}, 'axes': {'x': inputs}}
+    with refused('twins', name=name):
+        read_series(path, make_map(stated))
+    content['time'] |= {'unit': 's', 'scale': 1.0 / RATE / step}
+    series = read_series(path, make_map(content))
+    rows = [rows for groups in series.blocks() for rows in groups if 'x.load' in rows.columns]
+    times = (np.concatenate([one.stamps for one in rows]) - series.begin) / 1e9
+    load = np.concatenate([one.columns['x.load'] for one in rows])
+    np.testing.assert_allclose(load, 900.0 * np.cos(math.tau * times / 4.0), atol=1e-2)
+
+
+def test_times_of_one_name_that_are_the_same_leave_the_rate_alone(tmp_path):
+    path = groups(tmp_path / 'log.csv', 'X', shift=0.0)
+    axis = {'speed': {'column': 'X speed [mm/s]', 'unit': 'mm/s'}}
+    axis |= {'load': {'column': 'X force [N]', 'unit': 'N'}, 'lead_mm': 10.0}
+    mapping = make_map({'time': {'rate_Hz': RATE, 'epoch': EPOCH}, 'axes': {'x': axis}})
+    assert read_series(path, mapping).count == COUNT
+
+
+@pytest.mark.parametrize(('stated', 'period'), [('200 Hz', 0.005), ('100 Hz', None)])
+def test_a_head_of_another_rate_than_the_times_is_asked_about(stated, period, tmp_path, says):
+    path = tmp_path / 'log.csv'
+    lines = [f'{one:.2f};{speed:.4f};-300' for one, speed in zip(TIME, SPEED, strict=True)]
+    path.write_text(f'# Sample rate: {stated}\nTime [s];X speed [mm/s];X force [N]\n')
+    path.write_text(path.read_text() + '\n'.join(lines) + '\n')
+    made = guess(path)
+    assert (made.content['time']['column'] is None) is (period is not None)
+    assert (says('two_rates') in made.unstated) is (period is not None)
+    made.content['time']['column'] = 'Time [s]'
+    made.content['axes']['x']['load']['magnitude'] = False
+    notes = ' '.join(read_series(path, make_map(made.content)).notes)
+    assert (says('by_map', key='time.column', period='0.01') in notes) is (period is not None)
+    time = {'time': {'rate_Hz': 200.0}}
+    notes = ' '.join(read_series(path, make_map(made.content | time)).notes)
+    assert (says('by_map', key='time.rate_Hz', period='0.005') in notes) is (period is None)
+
+
+def test_a_counter_beside_a_stated_rate_of_the_head_is_offered_a_scale(tmp_path, says):
+    path = tmp_path / 'log.csv'
+    lines = [f'{one};{speed:.4f}' for one, speed in enumerate(SPEED)]
+    path.write_text('# Sample rate: 200 Hz\nTime;X speed [mm/s]\n' + '\n'.join(lines) + '\n')
+    assert says('scale') in guess(path).unstated
