@@ -9,6 +9,7 @@ A first map asks by the same sentences for which a log is refused whose map leav
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 import dataclasses
+import math
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.amounts import (
@@ -20,14 +21,15 @@ from ballscrew_monitor.recordings.tables.amounts import (
     stays_in_gaps,
 )
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.estimates import Turns
+from ballscrew_monitor.recordings.tables.estimates import mark_of_none, Turns
 from ballscrew_monitor.recordings.tables.interleaved import cells_of_sources, of_several
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
 from ballscrew_monitor.recordings.tables.names import axis_of_all, LINEAR, read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.times import line, SHOWING, Times
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.words import counted, short
+import numpy as np
 from surrogate.files import InputError
 
 OF_SLOPE = 'the speed is the slope of the position'
@@ -95,6 +97,18 @@ def unclear_gaps(axis: str, kind: str, column: str) -> str:
         f'state axes.{axis}.{kind}.hold in the map, true if {short(column)} was written when it '
         'changed, false if nothing is known in gaps: it is the same before and after gaps, in '
         'motion'
+    )
+
+
+def unclear_none(axis: str, kind: str, column: str, values: Array) -> str:
+    """Return what decides whether a number stands for no value, empty if none may."""
+    mark = mark_of_none(values)
+    if math.isnan(mark):
+        return ''
+    rows = counted(int(np.count_nonzero(values == mark)), 'row')
+    return (
+        f'state axes.{axis}.{kind}.none in the map, [{mark:g}] if {mark:g} stands for no value, '
+        f'[] if it is one: {short(column)} holds it in {rows}, far beyond all others'
     )
 
 
@@ -177,6 +191,10 @@ def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
     if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
         yield unclear_factors(factors)
     for axis in mapping.axes:
+        for kind, column in axis.columns.items():
+            if column.name in table.readings and column.marks.none is None:
+                if why := unclear_none(axis.name, kind, column.name, table.sampled(column.name)):
+                    yield why
         position = axis.columns.get('position')
         if position is None or position.name not in table.readings:
             continue

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 import contextlib
 import dataclasses
 import json
+import math
 from pathlib import Path
 import re
 from typing import Any
@@ -30,7 +31,13 @@ from ballscrew_monitor.recordings.tables.apart import frame_apart
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.codings import text_of
 from ballscrew_monitor.recordings.tables.heads import with_unit
-from ballscrew_monitor.recordings.tables.layouts import ADAPTER, format_of, FORMATS, RECORDER
+from ballscrew_monitor.recordings.tables.layouts import (
+    ADAPTER,
+    format_of,
+    FORMATS,
+    period_of,
+    RECORDER,
+)
 from ballscrew_monitor.recordings.tables.signals import columns_of_records, side_by_side, Signals
 from polars.exceptions import PolarsError
 from surrogate.files import InputError, limits
@@ -139,15 +146,15 @@ def _xml(path: Path) -> Signals:
         raise Unreadable('it states a type of document')
     root = ElementTree.fromstring(text)
     named, keys, rows, start = {}, {}, [], ''
+    periods: set[float] = set()
     for element in root.iter():
         tag, held = element.tag.rpartition('}')[2], element.attrib
         if tag == 'signal' and 'key' in held:
-            parts = (held.get(one, '') for one in ('axis', 'axisName', 'name', 'description'))
-            unit = held.get('units') or held.get('unit') or ''
-            name = ' '.join(dict.fromkeys(part for part in parts if part))
-            named[held['key']] = with_unit(name, unit)
+            named[held['key']] = _name_of_signal(held)
         elif tag == 'dataSignal' and 'id' in held:
-            keys[held['id']] = held.get('name') or named.get(held.get('key', ''), held['id'])
+            own = _name_of_signal(held) if 'name' in held else ''
+            keys[held['id']] = own or named.get(held.get('key', ''), held['id'])
+            periods.add(period_of(held.get('interval', ''), 's'))
         elif tag == 'frameHeader':
             start = start or held.get('startTime', '')
         elif tag == 'rec':
@@ -157,7 +164,15 @@ def _xml(path: Path) -> Signals:
     counts = Counter(keys.values())
     names = {key: name if counts[name] == 1 else f'{name} {key}' for key, name in keys.items()}
     frame = side_by_side(columns_of_records(rows)).rename(names, strict=False)
-    return Signals(frame=frame, start=start)
+    period = periods.pop() if len(periods) == 1 else math.nan
+    return Signals(frame=frame, start=start, period=period)
+
+
+def _name_of_signal(held: Mapping[str, str]) -> str:
+    """Return axis, name and description of a signal of a trace, with its unit in brackets."""
+    parts = (held.get(one, '') for one in ('axis', 'axisName', 'name', 'description'))
+    unit = next((held[one] for one in ('units', 'unit', 'unitsType') if held.get(one)), '')
+    return with_unit(' '.join(dict.fromkeys(part for part in parts if part)), unit)
 
 
 def _long(path: Path) -> Signals:

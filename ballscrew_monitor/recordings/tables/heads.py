@@ -61,6 +61,8 @@ NO_NUMBER = frozenset(
     {'nan', 'n/a', 'na', 'null', 'none', 'inf', '-inf', '-nan', '#n/a', '--', '-'}
 )
 """Cells that stand for a number that is not known."""
+OF_SPREADSHEET = re.compile(r'#(?:[^\W\d_]+/?\d?[!?]|NV|N/V)', re.I)
+"""What a spreadsheet writes for the result of a wrong formula."""
 BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I)
 """A factor of a time, where a row of factors says no more."""
 USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
@@ -195,16 +197,13 @@ def are_other_names(
 
 
 def _surplus(row: int, cells: int, names: int, separator: str) -> str:
-    twice = separator == ',' and cells <= 2 * names
-    cure = (
-        'if the decimal sign is a comma, save the table with semicolons between its cells, else '
-        if twice
-        else ''
-    )
-    return (
-        f'row {row} holds {cells} cells, its columns have {names} names: {cure}name each column, '
-        'or take surplus cells out'
-    )
+    held = f'row {row} holds {cells} cells, its columns have {names} names'
+    if separator == ',' and cells == 2 * names:
+        return f'{held}, as where commas are decimal signs too: save it with semicolons between'
+    twice = separator == ',' and cells < 2 * names
+    comma = 'if the decimal sign is a comma, save the table with semicolons between its cells, '
+    either = f'{comma}else ' if twice else ''
+    return f'{held}: {either}name each column, or take surplus cells out'
 
 
 def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
@@ -248,7 +247,7 @@ def unlike(names: Iterable[str]) -> tuple[str, ...]:
 @functools.lru_cache(maxsize=1 << 16)
 def _kind(cell: str) -> str:
     """Return n for a number or time, - for nothing, and x for any other cell."""
-    if not cell or cell.lower() in NO_NUMBER:
+    if not cell or cell.lower() in NO_NUMBER or OF_SPREADSHEET.fullmatch(cell):
         return '-'
     if any(map(str.isdigit, cell)) and (
         NUMBER.fullmatch(cell)
@@ -290,7 +289,7 @@ class _Block:
             self.width -= 1  # a sign at the end of each line parts nothing
         fits = {at for at in self.data if self._fits(kinds[at])}
         self.begin = self._begin(kinds, fits)
-        self.begin += self._bare_factors()
+        self.begin += self._bare_factors() or -self._rows_with_words(kinds)
         rows = [kinds[at] for at in fits if at >= self.begin]
         numbers = sum(row.count('n') for row in rows)
         filled = sum(len(row) - row.count('-') for row in rows)
@@ -316,6 +315,24 @@ class _Block:
             if whole and sum(one in fits for one in following) >= MOSTLY * len(following):
                 return at
         return len(self.rows)
+
+    def _rows_with_words(self, kinds: Sequence[Sequence[str]]) -> int:
+        """Return how many rows before the begin hold words for numbers, as rows behind it do."""
+        rows = self.rows[self.begin :]
+        words = [
+            {row[column] for row in rows if len(row) > column} for column in range(self.width)
+        ]
+        held, count = {*self.data} if rows else set(), 0
+        while (at := self.begin - count - 1) in held and len(self.rows[at]) == self.width:
+            odd = [
+                cell in known
+                for cell, kind, known in zip(self.rows[at], kinds[at], words, strict=True)
+                if kind == 'x'
+            ]
+            if not odd or not all(odd):
+                break
+            count += 1
+        return count
 
     def _bare_factors(self) -> int:
         """Return how many rows at the begin are factors and offsets: no time goes on with them."""
@@ -426,7 +443,11 @@ class _Above:
 
     def __init__(self, lines: Sequence[Line], block: _Block) -> None:
         self.block, self.separator, self.width = block, block.separator, block.width
-        self.lines = list(zip(lines, block.rows, strict=False))
+        self.lines = [
+            pair
+            for line, row in zip(lines, block.rows, strict=False)
+            for pair in _pairs_of_properties(line, row) or [(line, row)]
+        ]
         self.text = '\n'.join(line.raw or '\t'.join(line.cells) for line in lines)
         self.program = format_of(self.text)
         self.wide = [(line, row) for line, row in self.lines if self._is_wide(row)]
@@ -449,6 +470,8 @@ class _Above:
 
     def _is_wide(self, row: Sequence[str]) -> bool:
         fills = sum(map(bool, row)) > FULL * (self.block.width - 1)
+        if not fills and len(row) == self.block.width:  # columns of marks have no unit
+            fills = any(row[1:]) and all(is_unit(cell) for cell in row if cell)
         return fills and (len(row) > 1 or self.block.width == 1)
 
     def head(self, first: int) -> Head:
@@ -536,7 +559,9 @@ class _Above:
         rows = [
             (line, row)
             for line, row in self.wide
-            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
+            if not _is_of_numbers(row)
+            and not _is_of_a_channel(row)
+            and (len(row) == self.width or self.separator != BLANKS)
         ]
         return [one for one in rows if not _is_of_units(one[1])] or rows
 
@@ -614,12 +639,13 @@ class _Above:
         return made
 
     def _called(self, names: Sequence[str]) -> list[str]:
-        """Return names of channels as lines above call them: a channel and its name in each."""
-        called = {
-            row[0]: row[1]
-            for _, row in self.lines
-            if len(row) > 1 and CHANNEL.fullmatch(row[0]) and read_name(row[1]).kind
-        }
+        """Return names of channels as lines above call them: channel, words of its name, unit."""
+        called = {}
+        for channel, *words in [row for _, row in self.lines if _is_of_a_channel(row)]:
+            words = [*filter(None, words)]
+            unit = words.pop() if len(words) > 1 and is_unit(words[-1]) else ''
+            if read_name(name := with_unit(' '.join(words), unit)).kind:
+                called[channel] = name
         return [called.get(name, name) for name in names]
 
     def _comment(self) -> list[str]:
@@ -762,6 +788,23 @@ class _Above:
         else:
             return None
         return math.nan if OTHER_PERIOD.search(text) else period
+
+
+def _pairs_of_properties(line: Line, row: Sequence[str]) -> list[tuple[Line, list[str]]]:
+    """Return the properties of a row that holds several, each with its value, as lines."""
+    keys, values = row[::2], row[1::2]
+    if not 1 < len(keys) == len(values) or not all(map(property_of, keys)):
+        return []
+    if any(_kind(value) != 'n' for value in values):
+        return []
+    pairs = [[key, value] for key, value in zip(keys, values, strict=True)]
+    return [(Line(raw=': '.join(pair), row=line.row), pair) for pair in pairs]
+
+
+def _is_of_a_channel(row: Sequence[str]) -> bool:
+    """Return True for a row that says of one channel what it is."""
+    channels = [bool(CHANNEL.fullmatch(cell)) for cell in row]
+    return len(row) > 1 and channels[0] and not any(channels[1:])
 
 
 def _key_and_value(line: Line, separator: str) -> tuple[str, str]:

@@ -211,7 +211,8 @@ FORMATS = (
     ),
     Format(program='rostopic echo -p', mark=re.compile('^%time,', re.M), times=(('%time', 'ns'),)),
     Format(
-        program='FANUC SERVO GUIDE', mark=re.compile(r'\b(?:TCMD|VCMD|POSF|SPEED|ERR)\b.*\(', re.M)
+        program='FANUC SERVO GUIDE',
+        mark=re.compile(r'^"?SERVO GUIDE|\b(?:TCMD|VCMD|POSF|SPEED|ERR)\b.*\(', re.M),
     ),
 )
 """Programs that are recognised by their heads."""

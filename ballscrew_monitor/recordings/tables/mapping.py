@@ -95,6 +95,8 @@ PLACES = {
     'also for `current`; needed only if the log does not show it',
     'AXIS.QUANTITY.valid': '`{column: ..., cells: [...]}`: column of qualities, and those of its '
     'cells in whose rows the quantity is valid; in others it is not known',
+    'AXIS.QUANTITY.none': '`[-9999]`: numbers that stand for no value; `[]` if all of them are '
+    'values; needed only if the log holds such as stand for none elsewhere',
     'AXIS.speed.backward': '`{column: ..., cells: [...]}`: column of directions, and those of its '
     'cells in whose rows the speed gets a minus',
     'AXIS.QUANTITY.hold': '`true` for values that were written when they changed: each stays '
@@ -386,6 +388,17 @@ class _Part:
             raise InputError(f'{self._prefix}.{name} is {_said(value)}, it must be true or false')
         return value
 
+    def numbers(self, name: str) -> tuple[float, ...] | None:
+        """Return a list of numbers, None without one."""
+        if f'{self._prefix}.{name}' not in self._values:
+            return None
+        values = self.take(name)
+        if not isinstance(values, list) or not all(map(_is_number, values)):
+            raise InputError(
+                f'{self._prefix}.{name} is {_said(values)}, it must be a list of numbers'
+            )
+        return tuple(map(float, values))
+
     def mark(self, role: str) -> Mark | None:
         """Return the column that marks values, and its cells that do so."""
         column, cells = self.text(f'{role}.column'), self.take(f'{role}.cells', [])
@@ -416,6 +429,7 @@ class _Part:
         marks = Marks(
             valid=None if at else part.mark('valid'),
             backward=part.mark('backward') if kind == 'speed' else None,
+            none=None if at else part.numbers('none'),
         )
         hold = None if at else part.flag('hold', None)
         is_scaled = f'{part._prefix}.scale' in part._values

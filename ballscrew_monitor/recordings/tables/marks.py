@@ -81,14 +81,20 @@ class Mark:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Marks:
-    """What marks the values of a column: as valid, and as backward."""
+    """
+    What marks the values of a column: as valid, and as backward.
+
+    The numbers `none` stand for no value there, None where it is not said whether some do.
+
+    """
 
     valid: Mark | None = None
     backward: Mark | None = None
+    none: tuple[float, ...] | None = None
 
     @property
     def held(self) -> list[Mark]:
-        """Return those that there are."""
+        """Return those that are other columns."""
         return [one for one in (self.valid, self.backward) if one]
 
 

@@ -61,6 +61,8 @@ END_OF_HEAD, HEADS = '***End_of_Header***', 2
 """Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
+LAST_WORDS = re.compile(rb'(?:(?<=\n)|(?<=\r))[\s*#=<>.-]*[A-Za-z][A-Za-z *#=<>.-]{0,40}\s*\Z')
+"""A line at the end of a text that ends it by a word, as EOF, and is no row."""
 AFTER_EMPTY = '"'
 """The last of the letters that may follow a sign before an empty cell: ends of lines, blanks."""
 TRIES = (
@@ -536,7 +538,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         called = {str(places[name]): name for name in chosen}
         with text.stream() as stream:
             stream.seek(begins[head.begin])
-            for part in _parts(stream, text.line_end.encode()):
+            for part in _without_last_words(_parts(stream, text.line_end.encode()), width):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
                 if torn:
                     content = re.sub(TORN_TIME.encode(), WHOLE.encode(), content, flags=re.M)
@@ -678,6 +680,16 @@ def _parts(stream: BinaryIO, line_end: bytes) -> Iterator[bytes]:
         else:
             held.append(block)
         block = following
+
+
+def _without_last_words(parts: Iterator[bytes], width: int) -> Iterator[bytes]:
+    """Yield a text in parts, without a word that ends it instead of a row of several cells."""
+    held = b''
+    for part in parts:
+        if held:
+            yield held
+        held = part
+    yield LAST_WORDS.sub(b'', held) if width > 1 else held
 
 
 def _is_odd(block: bytes) -> bool:

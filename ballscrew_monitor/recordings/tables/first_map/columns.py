@@ -27,14 +27,16 @@ from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.stated_rate import twin_times
 from ballscrew_monitor.recordings.tables.unit_names import words_of
-from ballscrew_monitor.recordings.words import listed, short, Shown
-import numpy as np
+from ballscrew_monitor.recordings.words import listed, Shown
 from surrogate.files import InputError
 from surrogate.units import TURN
 
 EPOCH = '2000-01-01T00:00:00Z'
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
+BY_HAND = (
+    'a map may name one, such as `axes: {x: {speed: {column: ..., unit: mm/s}, lead_mm: 10.0}}`'
+)
 JOINT = re.compile(
     r'(?P<before>.*?)(?P<field>name|position|velocity|effort)(?P<number>\[?_?\d+\]?)$'
 )
@@ -48,10 +50,11 @@ class Columns:
     `times` may be the time; `axes` has the columns of each axis by what they are, `by_axis` all
     that may be; `joints` are named by the cells of others. `marks` says what a map says of the
     marks of each input, `mark_cells` the cells of these. `data` are the first rows, `sampled` rows
-    that span the log, since signs may be seen late, and `extremes` the least and the most.
-    `twins` are of one name and rise evenly.
-    `not_times` says why columns are no time, `lost` which of an axis hold no number; `doubts` are
-    the decimal sign or the `order` of dates that the log does not show, `unclear` says so.
+    that span the log, since signs may be seen late, and `extremes` the least and the most. `none`
+    are the numbers of inputs of which one may stand for no value, `twins` columns of one name that
+    rise evenly. `not_times` says why columns are no time, `lost` which of an axis hold no number;
+    `doubts` are the decimal sign or the `order` of dates that the log does not show, `unclear`
+    says so.
 
     """
 
@@ -150,7 +153,8 @@ class Columns:
             if set(MOTION) & set(chosen := names.best(found))
         }
         if not self.axes:
-            held = [listed(self.source.names()), *names.unknown_units(self.named)]
+            of_no_unit = names.unknown_units(self.named)
+            held = [listed(self.source.names()), *(of_no_unit or [BY_HAND])]
             raise InputError(
                 f'log {self.path}: no column looks like the speed or position of an axis, it '
                 f'holds {"; ".join(held)}'
@@ -218,11 +222,32 @@ class Columns:
     def _look_through(self, most: int, shown: Shown) -> None:
         """Read the columns that may be inputs or times, by those marks that are clear."""
         clear = {
-            column: Marks(**{role: Mark(**place) for role, place in places.items()})
+            column: Marks(
+                **{role: Mark(**place) for role, place in places.items()}  # type: ignore[arg-type]
+            )
             for column, places in self.marks.items()
             if places and all(place['cells'] is not None for place in places.values())
         }
-        self.source, inputs = self.source.marked(clear), self.inputs
+        self.source, self.none = self.source.marked(clear), dict[str, Array]()
+        self._read(most, shown)
+        self.none = {
+            one.column: self.data[one.column]
+            for one in self.inputs
+            if one.column in self.data
+            and math.isfinite(estimates.mark_of_none(self.data[one.column]))
+        }
+        if self.none:
+            without = {
+                name: Marks(none=(estimates.mark_of_none(values),))
+                for name, values in self.none.items()
+            }
+            self.source = self.source.marked(without)
+            self._read(most, shown)
+        self._scale(self.inputs)
+
+    def _read(self, most: int, shown: Shown) -> None:
+        """Read the columns that may be inputs or times, by the decimal sign that they show."""
+        inputs = self.inputs
         others = [
             other
             for name, chosen in self.axes.items()
@@ -253,21 +278,12 @@ class Columns:
             *names.told_by_words(self.named),
             *names.told_by_units(self.named),
         ]
-        self._scale(inputs)
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
 
     def _scale(self, inputs: Iterable[Named]) -> None:
-        """Bring inputs to their units; raises InputError for a number that stands for none."""
+        """Bring inputs to their units."""
         for one in [one for one in inputs if one.column in self.data]:
-            values = self.data[one.column]
-            mark = estimates.mark_of_none(values)
-            if math.isfinite(mark):
-                raise InputError(
-                    f'log {self.path}: column {short(repr(one.column))} holds {mark:g} in '
-                    f'{np.count_nonzero(values == mark)} rows, far beyond all others, as a mark '
-                    'of no value: leave these cells empty'
-                )
             if one.scale != 1.0:
                 for numbers in (self.data, self.sampled, self.extremes):
                     numbers[one.column] = numbers[one.column] * one.scale
@@ -295,7 +311,7 @@ class Columns:
             if not set(MOTION) & set(left):
                 self.axes.pop(name)
         if not self.axes:
-            raise InputError('; '.join(self.notes))
+            raise InputError(f'{"; ".join(self.notes)}; {BY_HAND}')
 
 
 def _unnamed(path: Path, head: Head) -> str:

@@ -3,7 +3,7 @@
 """Validity of inputs in a first map: by columns of marks, between jumps, and in gaps."""
 
 from ballscrew_monitor.recordings.tables.amounts import stays_in_gaps
-from ballscrew_monitor.recordings.tables.doubts import unclear_gaps
+from ballscrew_monitor.recordings.tables.doubts import unclear_gaps, unclear_none
 from ballscrew_monitor.recordings.tables.dropouts import column_of, dropped
 from ballscrew_monitor.recordings.tables.first_map.draft import Draft
 from ballscrew_monitor.recordings.tables.first_map.own_times import OwnTimes
@@ -29,6 +29,10 @@ def set_marks(draft: Draft, name: str, kind: str) -> None:
                 f': the cells of {short(mark["column"])} by which {column} is {role}, of '
                 f'{listed(log.mark_cells[mark["column"]])}; or take {role} out of the map',
             )
+    if place['column'] in log.none:
+        values = log.none[place['column']]
+        place['none'] = None
+        draft.unstated.append(unclear_none(name, kind, place['column'], values))
     if 'valid' not in place:
         _ask_for_dropouts(draft, name, kind)
 

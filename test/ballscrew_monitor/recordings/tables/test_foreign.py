@@ -129,6 +129,39 @@ def sinumerik_xml(path):
     )
 
 
+def trace(path, *, times=True):
+    """Write a trace whose signals state axis, unit and interval themselves, of two axes."""
+    signals = [('Pos1stEnc64', 'X1', 'mm'), ('Pos1stEnc64', 'Z1', 'mm'), ('VelMot64', 'X1', '°/s')]
+    stated = ''.join(
+        f'<dataSignal id="f{at}" name="/Nck/!SD/nckServoDataAct{name}" axis="{axis}" '
+        f'interval="{STEP}" unitsType="{unit}"/>'
+        for at, (name, axis, unit) in enumerate(signals)
+    )
+    records = ''.join(
+        '<rec ' + f'time="{time:.4f}" ' * times + f'f0="{place:.6f}" f1="{2 * place:.6f}" '
+        f'f2="{36.0 * speed:.6f}"/>'
+        for time, place, speed in zip(TIME, PLACE, SPEED, strict=True)
+    )
+    path.write_text(
+        f'<traceCaptureData><frameHeader/>{stated}{records}</traceCaptureData>', 'utf-8'
+    )
+
+
+@pytest.mark.parametrize('times', [True, False])
+def test_signals_of_a_trace_may_state_axis_unit_and_interval_themselves(times, tmp_path):
+    """A speed in degrees of a screw of 10 mm, and two axes whose signals have one name."""
+    path = tmp_path / 'trace.xml'
+    trace(path, times=times)
+    content = guess(path).content
+    assert list(content['axes']) == ['x', 'z']
+    assert content['time'] == ({'column': 'time'} if times else {'rate_Hz': 1.0 / STEP})
+    (rows,) = next(read_series(path, make_map(content)).blocks())
+    np.testing.assert_allclose(np.diff(rows.stamps), STEP * 1e9, atol=1e3)
+    turned = math.tau / 10.0
+    np.testing.assert_allclose(rows.columns['x.speed'], SPEED * turned, atol=1e-4)
+    np.testing.assert_allclose(rows.columns['z.position'], 2 * PLACE * turned, rtol=1e-6)
+
+
 def matlab(path):
     log = {'time_s': TIME, 'x': {'position_mm': PLACE, 'current_A': np.full(COUNT, 1.5)}}
     scipy.io.savemat(path, {'log': log, 'note': 'of a mill'})

@@ -12,6 +12,7 @@ from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 import numpy as np
 import pytest
+from surrogate.files import InputError
 import yaml
 
 TIME = np.arange(200) / 50.0
@@ -975,19 +976,36 @@ def test_whole_seconds_and_their_parts_apart_are_one_time(part, rows, tmp_path):
 
 @pytest.mark.parametrize('mark', [-9999.0, 999.9, 32767.0, 655.35, 327.67])
 @pytest.mark.parametrize('place', ['x_velocity_mm_s', 'x_force_N'])
-def test_a_number_that_stands_for_no_value_is_refused(mark, place, write_csv, tmp_path, refused):
-    columns = {'t_s': TIME, 'x_velocity_mm_s': SPEED, 'x_force_N': 0.8 * SPEED}
-    held = columns[place].copy()
-    held[50:54] = mark
-    log = write_csv(tmp_path / 'log.csv', columns | {place: held}, form='{:.7g}')
-    with refused('mark_of_none', column=repr(place), mark=f'{mark:g}', count='4'):
-        guess(log)
+def test_a_number_that_may_stand_for_no_value_is_asked_for(
+    mark, place, write_csv, tmp_path, says, refused
+):
+    """By the map, too, which reads it as a value or as none."""
+    time = np.arange(400) / 50.0
+    columns = {'t_s': time, 'x_velocity_mm_s': 100.0 * np.sin(time)}
+    columns['x_force_N'] = 0.8 * columns['x_velocity_mm_s']
+    kind = {'x_velocity_mm_s': 'speed', 'x_force_N': 'load'}[place]
+    columns[place] = columns[place].copy()
+    columns[place][50:54] = mark
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    made = guess(log)
+    question = says('mark_of_none', kind=kind, column=place, mark=f'{mark:g}')
+    assert question in made.unstated
+    axis = made.content['axes']['x'][kind]
+    assert axis.pop('none') is None
+    with pytest.raises(InputError, match='stands for no value'):
+        read_series(log, make_map(made.content))
+    for none, unknown in (([mark], 4), ([], 0)):
+        axis['none'] = none
+        (rows,) = next(read_series(log, make_map(made.content)).blocks())
+        assert np.count_nonzero(np.isnan(rows.columns[f'x.{kind}'])) == unknown
+    axis['none'] = mark
+    refused('none_is_a_list', make_map, made.content)
 
 
 @pytest.mark.parametrize('mark', [999.9, 655.35, 327.67])
 @pytest.mark.parametrize('slow', [True, False])
 def test_a_full_number_near_others_is_a_mark_where_it_is_reached_in_a_leap(
-    mark, slow, write_csv, tmp_path, refused
+    mark, slow, write_csv, tmp_path, says
 ):
     force = 0.91 * mark * np.sin(TIME / 2.0)
     held = np.arange(len(TIME)) // 4 == 20
@@ -998,8 +1016,8 @@ def test_a_full_number_near_others_is_a_mark_where_it_is_reached_in_a_leap(
     if slow:
         assert guess(log).content['axes']['x']['load']
         return
-    with refused('mark_of_none', column="'x_force_N'", mark=f'{mark:g}', count='4'):
-        guess(log)
+    question = says('mark_of_none', kind='load', column='x_force_N', mark=f'{mark:g}')
+    assert question in guess(log).unstated
 
 
 @pytest.mark.parametrize(('mark', 'count'), [(9999.0, 2), (9990.0, 10), (9999.0, 150), (99.0, 9)])

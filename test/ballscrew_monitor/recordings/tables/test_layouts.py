@@ -306,6 +306,12 @@ def test_a_value_a_line_between_bars_is_not_taken_for_lines_of_an_adapter(tmp_pa
     assert check(text, true, tmp_path / 'log.csv')
 
 
+@pytest.mark.parametrize('marks', ['quality', 'status', 'words'])
+def test_units_stand_below_the_names_though_columns_of_marks_have_none(marks, tmp_path):
+    made = layout(random.Random(2)) | {'units below': True, 'grouping': 'one', 'factors': False}
+    assert check(*written(made | {'marks': marks}), tmp_path / 'log.csv')
+
+
 def test_most_of_drawn_layouts_are_read(tmp_path):
     assert sum(drawn(seed, tmp_path) for seed in range(DRAWN)) >= 0.7 * DRAWN
 
@@ -413,6 +419,66 @@ def test_a_row_of_factors_is_asked_for_whatever_stands_behind_the_names(note, tm
     path.write_text('\n'.join([names, 's;mm;N', '1;0,5;1', *rows]))
     axis = guess(path).content['axes']['x']
     assert [axis[name]['scale'] for name in ('position', 'load')] == [None, None]
+
+
+@pytest.mark.parametrize('separator', [',', ';', '\t'])
+@pytest.mark.parametrize('date', ['2025-07-14', '2025/07/14'])
+def test_a_servo_guide_has_properties_side_by_side_and_a_line_for_each_channel(
+    separator, date, tmp_path
+):
+    """Rows as wide as the table: two properties, or channel, axis, signal and unit."""
+    head = [['SERVO GUIDE DATA'], ['DATE', date, 'TIME', '11:59:50'], ['SAMPLING', '1msec']]
+    head += [['CH1', 'X', 'POSF', 'mm'], ['CH2', 'X', 'TCMD', '%'], ['CH3', 'X', 'SPEED', '1/min']]
+    head.append(['TIME', 'CH1', 'CH2', 'CH3'])
+    turning = [540.0 * math.sin(math.pi * row / 200) for row in range(400)]
+    place = np.cumsum(turning) * 10.0 / 60.0 / 1000.0
+    rows = [
+        [f'{row}', f'{150.0 + place[row]:.6f}', '50.0' if row < 200 else '-50.0', f'{one:.4f}']
+        for row, one in enumerate(turning)
+    ]
+    path = tmp_path / 'guide.csv'
+    path.write_text('\n'.join(separator.join(row) for row in [*head, *rows]))
+    content = guess(path).content
+    axis = content['axes']['x']
+    assert {kind: axis[kind]['unit'] for kind in ('speed', 'position', 'torque')} == {
+        'speed': 'rev/min',
+        'position': 'mm',
+        'torque': '%',
+    }
+    axis['torque_rated_Nm'] = 4.0
+    (block,) = next(read_series(path, make_map(content)).blocks())
+    assert block.stamps[0] == BEGIN.timestamp() * 1e9
+    np.testing.assert_array_equal(np.diff(block.stamps), 1_000_000)
+    np.testing.assert_allclose(
+        block.columns['x.speed'], np.array(turning) * math.tau / 60.0, atol=1e-4
+    )
+    np.testing.assert_allclose(np.abs(block.columns['x.torque']), 2.0)
+
+
+@pytest.mark.parametrize('places', [{0}, {0, 1, 7}, {0, 30}])
+@pytest.mark.parametrize('word', ['#DIV/0!', '#NV', '#VALUE!', 'No Data', 'I/O Timeout'])
+def test_a_word_for_a_number_in_the_first_row_is_counted_as_in_all_others(places, word, tmp_path):
+    if places == {0} and not word.startswith('#'):
+        places = {0, 40}  # a word that stands nowhere else may be a remark
+    force = [word if at in places else f'{300 - 10 * (at % 60)}' for at in range(100)]
+    lines = [f'{at / 100:.2f},{at % 50 - 25}.5,{force[at]}' for at in range(100)]
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join(['t [s],x speed [mm/s],x force [N]', *lines]) + '\n')
+    (rows,) = next(read_series(path, make_map(guess(path).content)).blocks())
+    assert {*np.flatnonzero(np.isnan(rows.columns['x.load'])).tolist()} == places
+    assert len(rows.stamps) == 100
+
+
+@pytest.mark.parametrize('end', ['EOF', 'END', '*** end of data ***', '# EOF', 'EOF\n\n'])
+def test_a_word_that_ends_a_table_is_no_row_that_is_missing(end, tmp_path):
+    lines = [f'{at / 100:.2f},{at % 50 - 25}.5,{300 - 10 * (at % 60)}' for at in range(100)]
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join(['t [s],x speed [mm/s],x force [N]', *lines, end]))
+    series = read_series(path, make_map(guess(path).content))
+    assert (series.count, series.rows) == (100, (100,))
+    assert not [note for note in series.notes if 'cells' in note]
+    path.write_text('\n'.join(['t [s],x speed [mm/s],x force [N]', *lines, '1.00,3']))
+    assert read_series(path, make_map(guess(path).content)).rows == (101,), 'a row that was torn'
 
 
 @pytest.mark.parametrize('clock', ['11:59:{:02d};{:03d}', '11:59:{:02d};{}'])

@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Units in the names of columns in the ways in which controls write them."""
 
+import math
+
+from ballscrew_monitor.core.conversions import ROTARY_SPEED_UNITS
+from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import (
     factor_of,
     is_unit,
@@ -48,6 +52,27 @@ import pytest
 )
 def test_a_unit_is_found_as_it_is_spelt(column, kind, unit):
     assert unit_of(column, kind) == unit
+
+
+@pytest.mark.parametrize(
+    ('column', 'degrees'),
+    [
+        *((f'X speed [{unit}]', 1.0) for unit in ('°/s', 'deg/s', 'Grad/s', 'degrees/s')),
+        ('X speed [deg/sec]', 1.0),
+        ('X Geschwindigkeit (°/min)', 1.0 / 60.0),
+        ('X speed [rad/s]', 180.0 / math.pi),
+    ],
+)
+def test_a_turning_speed_is_one_of_degrees_in_a_second(column, degrees):
+    named = read_name(column)
+    turning = named.scale * ROTARY_SPEED_UNITS[named.unit]
+    assert turning == pytest.approx(math.radians(degrees), rel=1e-12)
+
+
+@pytest.mark.parametrize('unit', ['°', 'deg', 'Grad', 'degrees'])
+def test_an_angle_is_one_of_degrees(unit):
+    assert read_name(f'X position [{unit}]').unit == 'deg'
+    assert not read_name('Grad').kind, 'a word alone tells no quantity'
 
 
 @pytest.mark.parametrize(
