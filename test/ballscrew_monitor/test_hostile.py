@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that state too much or contradict themselves: one sentence, in bounded memory."""
 
+import dataclasses
 import io
 import json
 import os
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import zipfile
 
+from ballscrew_monitor import cli
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.mcap_file import message_definition
@@ -23,6 +25,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagWriter
 from rosbags.typesys import get_typestore, Stores
 from surrogate.files import printable
+from surrogate.surface import file as surface_file
 import zstandard
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -357,3 +360,26 @@ def test_what_is_judged_in_part_says_what_is_left_out(name, results, says):
     code, said, _ = results[name]
     assert code == int(name in MOSTLY_UNJUDGED)
     assert says(name) in said
+
+
+@pytest.mark.parametrize(
+    'field', ['minimum_temperature', 'density', 'viscosity', 'source', 'name']
+)
+def test_a_surface_of_this_format_whose_oil_lacks_a_field_is_one_sentence(
+    field, tmp_path, capsys, says
+):
+    """Written whole and sound but for one field of its oil, as by another program."""
+    whole, path = (
+        surface_file.read(ROOT / 'test' / 'data' / 'golden_surface.npz'),
+        tmp_path / 'a.npz',
+    )
+    header = json.loads(json.dumps(dict(whole.header)))
+    del header['inputs']['lubricant'][field]
+    surface_file.write(path, dataclasses.replace(whole, header=header))
+    assert header['format_version'] == surface_file.FORMAT_VERSION
+    code = cli.main(['surface', 'info', str(path)])
+    said = capsys.readouterr().err
+    assert code == 2, said
+    assert said.count('ballscrew: ') == 1
+    assert says('oil_lacks' if field != 'name' else 'oil_lacks_name') in said
+    assert f"'{field}'" in said
