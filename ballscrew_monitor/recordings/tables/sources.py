@@ -33,6 +33,7 @@ from ballscrew_monitor.recordings.tables.lines import (
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.sections import joined_sections, MARK
 from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
 from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
@@ -495,6 +496,7 @@ def _too_long(path: Path) -> InputError:
 
 
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
+    text, sections = _joined(path, text)
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins, coding = _first_lines(text)
@@ -564,6 +566,11 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
 
     rows = text.lines_about
     notes = [f'log {path}: its letters are not of UTF-8, they are read by {coding}'] * bool(coding)
+    if sections > 1:
+        notes.append(
+            f'log {path}: its {sections} sections have one head and are read as one table, whose '
+            'rows count without the further heads'
+        )
     if torn:
         notes.append(
             f'log {path}: a semicolon parts milliseconds as well as cells: it is read as part of '
@@ -571,6 +578,18 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         )
     source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=tuple(notes))
     return source.plain(heads.cells_of(lines, head))
+
+
+def _joined(path: Path, text: _Text) -> tuple[_Text, int]:
+    """Return a text of LabVIEW whose sections are joined if they may be, and their number."""
+    with text.stream() as stream:
+        begin = stream.read(HEAD).removeprefix(NARROW_MARK)
+        size = stream.seek(0, io.SEEK_END)
+        if not begin.startswith(MARK) or size > limits.TABLE:
+            return text, 1
+        stream.seek(0)
+        content, sections = joined_sections(path, stream.read())
+    return dataclasses.replace(text, content=content), sections
 
 
 def _several_sections(path: Path, row: int) -> InputError:

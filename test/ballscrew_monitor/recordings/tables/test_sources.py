@@ -320,30 +320,3 @@ def test_milliseconds_in_a_column_of_their_own_are_cells(end, tmp_path):
     rows = sources.source_of(path).first_rows()
     assert rows['X position [mm]'].to_list() == [f'{at}.5' for at in range(60)]
     assert rows['X speed [mm/s]'][0] == '7.25'
-
-
-def section(rows, names):
-    """Return a section of a file of LabVIEW, as it describes them."""
-    count = len(names)
-    head = [f'Channels\t{count}', 'Samples' + f'\t{rows}' * count, 'Delta_X' + '\t0.02' * count]
-    cells = ('\t'.join([f'{0.02 * at:.2f}', *[f'{at}.5'] * count]) for at in range(rows))
-    return [*head, END, '\t'.join(['X_Value', *names, 'Comment']), *cells, '']
-
-
-END = '***End_of_Header***\t'
-WAVES = ['X position [mm]', 'X velocity [mm/s]']
-
-
-@pytest.mark.parametrize('rows', [60, 3000])
-@pytest.mark.parametrize('names', [WAVES, ['Temperature'], [*WAVES, 'X force [N]']])
-def test_a_file_of_labview_with_several_sections_is_refused_in_a_sentence(
-    rows, names, tmp_path, refused
-):
-    path = tmp_path / 'log.lvm'
-    lines = ['LabVIEW Measurement\t', 'Separator\tTab', END, *section(rows, WAVES)]
-    path.write_text('\n'.join(lines))
-    assert sources.source_of(path).first_rows().height >= min(rows, sources.LINES)
-    path.write_text('\n'.join([*lines, *section(rows, names)]))
-    with refused('sections', row=len(lines) + 4):
-        for _ in sources.source_of(path).blocks(['X_Value']):
-            pass
