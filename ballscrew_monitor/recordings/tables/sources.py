@@ -497,14 +497,34 @@ def _too_long(path: Path) -> InputError:
 
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     text, sections = _joined(path, text)
-    with text.stream() as stream:
-        plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins, coding = _first_lines(text)
     ends = [line.row for line in lines if line.raw.startswith(END_OF_HEAD)]
     if len(ends) > HEADS:
         raise _several_sections(path, ends[HEADS])
-    if torn := are_torn([line.raw for line in lines]):
+    if is_torn := are_torn([line.raw for line in lines]):
         lines = [Line(raw=re.sub(TORN_TIME, WHOLE, line.raw), row=line.row) for line in lines]
+    head = _head_of_text(path, lines, layout)
+    rows = _TextRows(text=text, head=head, begin=begins[head.begin], is_torn=is_torn)
+    odd = {
+        'its letters are not of UTF-8, they are read by {}': coding,
+        'its {} sections have one head and are read as one table, whose rows count without the '
+        'further heads': sections * (sections > 1),
+        'a semicolon parts milliseconds as well as cells: it is read as part of the time': is_torn,
+    }
+    notes = [f'log {path}: {note.format(value)}' for note, value in odd.items() if value]
+    source = Source(
+        path=path,
+        head=head,
+        rows=text.lines_about,
+        read=rows.read,
+        short=rows.short,
+        notes=tuple(notes),
+    )
+    return source.plain(heads.cells_of(lines, head))
+
+
+def _head_of_text(path: Path, lines: Sequence[Line], layout: Layout | None) -> Head:
+    """Return the head of a text; raises InputError without one or for too many columns."""
     widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
     with _findable(path):
@@ -516,68 +536,78 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             f'log {path}: {sign} seems to part its cells, allowed are {listed(NAMES_OF_SIGNS)}: '
             'replace it by one of these'
         )
-    blanks = head.separator == heads.BLANKS
-    options: dict[str, Any] = {
-        'separator': head.separator,
-        # What it holds none of is not looked for, which takes as long as the cells themselves.
-        'encoding': 'utf8' if plain else 'utf8-lossy',
-        'comment_prefix': heads.COMMENT if comments else None,
-        'truncate_ragged_lines': True,
-        'eol_char': text.line_end,
-        'infer_schema': False,
-        'raise_if_empty': False,
-    }
-    places = {name: at for at, name in enumerate(head.names)}
-    width, short = len(head.names), ShortRows()
-    least = width - (head.names[-1].casefold() in COMMENTS)  # which most rows leave out
-    # Names for as many columns and one more, which must be empty, stand before each part.
-    line = head.separator.join(map(str, range(width + 1))) + text.line_end
+    return head
 
-    def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
-        tries, row, short.count, short.longer = TRIES, head.first, 0, 0
-        chosen = sorted(set(names), key=places.__getitem__)
-        options['columns'] = [*(places[name] for name in chosen), width]
-        called = {str(places[name]): name for name in chosen}
+
+class _TextRows:
+    """The rows of a text behind its head, read part by part; `short` are those of other widths."""
+
+    def __init__(self, *, text: _Text, head: Head, begin: int, is_torn: bool) -> None:
+        """Look at the lines of a text, whose rows `begin` at a byte; raises InputError."""
+        self._text, self._head, self._begin, self._is_torn = text, head, begin, is_torn
+        self._end, self._width, self.short = text.line_end.encode(), len(head.names), ShortRows()
         with text.stream() as stream:
-            stream.seek(begins[head.begin])
-            for part in _without_last_words(_parts(stream, text.line_end.encode()), width):
-                content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                if torn:
-                    content = re.sub(TORN_TIME.encode(), WHOLE.encode(), content, flags=re.M)
-                _check_further_heads(path, content, row, head)
-                whole = any(
-                    _are_whole(content, head.separator, text.line_end, one)
-                    for one in {least, width}
-                )
-                known = {str(places[name]): kind for name, kind in types.items() if tries}
-                named = b''.join([line.encode(), content])
-                cells = _typed(named, known, options) if whole else None
-                tries -= cells is None
-                cells = pl.read_csv(named, **options) if cells is None else cells
-                surplus = ~empties(cells[str(width)])
-                if not whole or surplus.any():
-                    widths = _widths(content, head.separator, text.line_end)
-                    if surplus.any() and len(widths) != cells.height:
-                        at = int(surplus.argmax())
-                        raise InputError(f'log {path}: {head.surplus(row + at, width + 1)}')
-                    cells = short.left_out(cells, widths, least, row, surplus)
-                row += cells.height
-                yield cells.rename(called).select(names)
+            plain, comments = _look_at_lines(text.path, stream, self._end)
+        # The last column may be one that most rows leave out.
+        self._least = self._width - (head.names[-1].casefold() in COMMENTS)
+        # Names for as many columns and one more, which must be empty, stand before each part.
+        self._names = head.separator.join(map(str, range(self._width + 1))).encode() + self._end
+        self._options: dict[str, Any] = {
+            'separator': head.separator,
+            # What it holds none of is not looked for, which takes as long as the cells themselves.
+            'encoding': 'utf8' if plain else 'utf8-lossy',
+            'comment_prefix': heads.COMMENT if comments else None,
+            'truncate_ragged_lines': True,
+            'eol_char': text.line_end,
+            'infer_schema': False,
+            'raise_if_empty': False,
+        }
 
-    rows = text.lines_about
-    notes = [f'log {path}: its letters are not of UTF-8, they are read by {coding}'] * bool(coding)
-    if sections > 1:
-        notes.append(
-            f'log {path}: its {sections} sections have one head and are read as one table, whose '
-            'rows count without the further heads'
+    def read(self, names: list[str], types: Types) -> Iterator[pl.DataFrame]:
+        """Yield some columns, those that have one by their types, part by part."""
+        places = {name: at for at, name in enumerate(self._head.names)}
+        called = {str(at): self._head.names[at] for at in sorted({places[name] for name in names})}
+        tries, row, self.short.count, self.short.longer = TRIES, self._head.first, 0, 0
+        for content in self._parts():
+            _check_further_heads(self._text.path, content, row, self._head)
+            known = {str(places[name]): kind for name, kind in types.items() if tries}
+            cells, is_typed = self._cells(content, row, [*map(int, called)], known)
+            tries -= not is_typed
+            row += cells.height
+            yield cells.rename(called).select(names)
+
+    def _parts(self) -> Iterator[bytes]:
+        """Yield the rows in parts, with one blank where several part cells, and whole times."""
+        blanks = self._head.separator == heads.BLANKS
+        with self._text.stream() as stream:
+            stream.seek(self._begin)
+            for part in _without_last_words(_parts(stream, self._end), self._width):
+                content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
+                if self._is_torn:
+                    content = re.sub(TORN_TIME.encode(), WHOLE.encode(), content, flags=re.M)
+                yield content
+
+    def _cells(
+        self, content: bytes, row: int, columns: Sequence[int], types: Types
+    ) -> tuple[pl.DataFrame, bool]:
+        """Return the cells of rows from `row` on, and whether they are of the types."""
+        separator, line_end = self._head.separator, self._text.line_end
+        whole = any(
+            _are_whole(content, separator, line_end, one) for one in {self._least, self._width}
         )
-    if torn:
-        notes.append(
-            f'log {path}: a semicolon parts milliseconds as well as cells: it is read as part of '
-            'the time'
-        )
-    source = Source(path=path, head=head, rows=rows, read=read, short=short, notes=tuple(notes))
-    return source.plain(heads.cells_of(lines, head))
+        named = self._names + content
+        options = {**self._options, 'columns': [*columns, self._width]}
+        typed = _typed(named, types, options) if whole else None
+        cells = pl.read_csv(named, **options) if typed is None else typed
+        surplus = ~empties(cells[str(self._width)])
+        if not whole or surplus.any():
+            widths = _widths(content, separator, line_end)
+            if surplus.any() and len(widths) != cells.height:
+                first = row + int(surplus.argmax())
+                told = self._head.surplus(first, self._width + 1)
+                raise InputError(f'log {self._text.path}: {told}')
+            cells = self.short.left_out(cells, widths, self._least, row, surplus)
+        return cells, typed is not None
 
 
 def _joined(path: Path, text: _Text) -> tuple[_Text, int]:
@@ -708,7 +738,8 @@ def _without_last_words(parts: Iterator[bytes], width: int) -> Iterator[bytes]:
         if held:
             yield held
         held = part
-    yield LAST_WORDS.sub(b'', held) if width > 1 else held
+    if rows := LAST_WORDS.sub(b'', held) if width > 1 else held:
+        yield rows
 
 
 def _is_odd(block: bytes) -> bool:
