@@ -140,10 +140,12 @@ def _form(lines: Sequence[str], separator: str) -> LongForm | None:
     if not 3 <= width <= WIDEST:
         return None
     wide = [at for at, row in enumerate(rows) if len(row) == width]
-    first, roles = wide[0], _roles(rows[wide[0]])
+    names_it = (at for at in wide[:FEWEST] if {'name', 'value'} <= set(_roles(rows[at])))
+    first = next(names_it, wide[0])  # a remark above it may be as wide
+    roles = _roles(rows[first])
     header = 'name' in roles and 'value' in roles
     if header:
-        wide = wide[1:]
+        wide = [at for at in wide if at > first]
     begin = wide[0] if wide else len(rows)
     if len(wide) < FEWEST or len(wide) < MOSTLY * sum(map(bool, rows[begin:])):
         return None

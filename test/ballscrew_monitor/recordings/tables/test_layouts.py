@@ -306,6 +306,13 @@ def test_a_value_a_line_between_bars_is_not_taken_for_lines_of_an_adapter(tmp_pa
     assert check(text, true, tmp_path / 'log.csv')
 
 
+def test_a_remark_as_wide_as_a_value_a_line_names_no_columns(tmp_path):
+    made = layout(random.Random(1009))
+    assert (made['grouping'], made['separator']) == ('a value a line', ',')
+    assert made['preamble'][0].count(',') == 2, 'as wide as time, signal and value'
+    assert check(*written(made), tmp_path / 'log.csv')
+
+
 @pytest.mark.parametrize('marks', ['quality', 'status', 'words'])
 def test_units_stand_below_the_names_though_columns_of_marks_have_none(marks, tmp_path):
     made = layout(random.Random(2)) | {'units below': True, 'grouping': 'one', 'factors': False}
