@@ -57,6 +57,52 @@ class Run:
     last: int = 0
 
 
+class Occurrences:
+    """Steps of a kind between rows: their number, and of the first its times [s] and its row."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self.count = self.row = 0
+        self.before = self.time = math.nan
+
+    def add(self, holds: NDArray[np.bool_], steps: Array, times: Array, rows: RowNumbers) -> None:
+        """Count those of further steps [s] that are of the kind, which lead to times and rows."""
+        if holds.any() and not self.count:
+            at = int(holds.argmax())
+            self.time, self.row = float(times[at]), int(rows[at])
+            self.before = self.time - float(steps[at])
+        self.count += int(holds.sum())
+
+    @property
+    def words(self) -> str:
+        """Return the first of them."""
+        return f'row {self.row} has {self.time:.12g} s after {self.before:.12g} s'
+
+
+class Shares:
+    """Numbers of rows that share a time, of times between which none falls."""
+
+    def __init__(self) -> None:
+        """Begin with no row."""
+        self.counts: Counter[int] = Counter()
+        self._rows, self._whole = 0, False  # those that have the last time
+
+    def add(self, equal: NDArray[np.bool_], falls: NDArray[np.bool_], rows: int) -> None:
+        """Count further rows by which steps to them are equal, and which fall."""
+        joined = rows - len(equal)  # 1 for the first row of all
+        begins = np.append(np.zeros(joined, np.int64), np.flatnonzero(~equal) + joined)
+        if not len(begins):
+            self._rows += rows
+            return
+        cut = np.append(np.ones(joined, np.bool_), falls[~equal])  # of a run, maybe
+        shares = np.diff(begins, append=rows)
+        if self._whole and not cut[0]:
+            self.counts[self._rows + int(begins[0])] += 1
+        inner = shares[:-1][~cut[:-1] & ~cut[1:]]
+        self.counts.update({round(one): n for one, n in _counts(inner)})
+        self._rows, self._whole = int(shares[-1]), not cut[-1]
+
+
 class TimeGate:
     """Times of the rows of a table, looked through in the order of the file."""
 
@@ -71,7 +117,7 @@ class TimeGate:
         self.runs: list[Run] = []
         self.clocks: list[tuple[int, float]] = []  # row from which a clock was set, by minus [s]
         self.count = self.late = 0
-        self._fallen = self._equal = 0
+        self._equal, self._falls, self._shares = Occurrences(), Occurrences(), Shares()
         self._unordered = False
         self._within = 0  # runs that begin in the second in which the one before ends
         self._pending: list[tuple[float, int]] = []  # late rows at the end
@@ -80,11 +126,7 @@ class TimeGate:
         self._half = 0  # row in which a clock of 12 hours begins again
         self._last = np.zeros(0)
         self._steps: Counter[float] = Counter()
-        self._shares: Counter[int] = Counter()
-        self._share = 0  # rows that have the last time
-        self._whole = False
         self._least, self._most = (math.inf, 0), (-math.inf, 0)
-        self._first_equal = self._first_fall = (0.0, 0.0, 0)
 
     def add(self, times: Array, rows: RowNumbers) -> None:
         """Take further times [s], all known, with their rows in the file."""
@@ -124,32 +166,14 @@ class TimeGate:
         """Count the steps between rows, and how many share each time."""
         with np.errstate(over='ignore', invalid='ignore'):
             steps = np.diff(times, prepend=self._last)
-        joined = len(times) - len(steps)  # 1 for the first row of all
-        equal, falls = steps == 0.0, steps < 0.0
-        if equal.any() and not self._equal:
-            at = int(equal.argmax()) + joined
-            self._first_equal = float(times[at]), float(times[at]), int(rows[at])
-        if falls.any() and not self._fallen:
-            at = int(falls.argmax()) + joined
-            before = float(times[at] - steps[at - joined])
-            self._first_fall = before, float(times[at]), int(rows[at])
-        self._equal += int(equal.sum())
-        self._fallen += int(falls.sum())
-        begins = np.append(np.zeros(joined, np.int64), np.flatnonzero(~equal) + joined)
-        if len(begins):
-            cut = np.append(np.ones(joined, np.bool_), falls[~equal])  # of a run, maybe
-            shares = np.diff(begins, append=len(times))
-            if self._whole and not cut[0]:
-                self._shares[self._share + int(begins[0])] += 1
-            inner = shares[:-1][~cut[:-1] & ~cut[1:]]
-            self._shares.update({round(one): n for one, n in _counts(inner)})
-            self._share, self._whole = int(shares[-1]), not cut[-1]
-            rising = steps[steps > 0.0]
-            if len(self._steps) < 4 * WINDOW:
-                rounded = np.array([float(f'{step:.3g}') for step in rising[:WINDOW]])
-                self._steps.update(dict(_counts(rounded)))
-        else:
-            self._share += len(times)
+        equal, falls, rising = steps == 0.0, steps < 0.0, steps[steps > 0.0]
+        later = slice(len(times) - len(steps), None)  # all but the first row of all
+        self._equal.add(equal, steps, times[later], rows[later])
+        self._falls.add(falls, steps, times[later], rows[later])
+        self._shares.add(equal, falls, len(times))
+        if len(self._steps) < 4 * WINDOW:
+            rounded = np.array([float(f'{step:.3g}') for step in rising[:WINDOW]])
+            self._steps.update(dict(_counts(rounded)))
         self._last = times[-1:]
 
     def _goes_on(self, times: Array) -> bool:
@@ -240,8 +264,9 @@ class TimeGate:
     @property
     def falls(self) -> bool:
         """Return True if the newest row stands first: times fall, and next to none rises."""
-        rising = self.count - 1 - self._equal - self._fallen
-        return self._fallen > FEWEST_FALLS and rising <= FEW_RISES * self._fallen
+        falls = self._falls.count
+        rising = self.count - 1 - self._equal.count - falls
+        return falls > FEWEST_FALLS and rising <= FEW_RISES * falls
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -283,14 +308,16 @@ class TimeGate:
     @property
     def shared(self) -> float:
         """Return the part of the rows that have the time of the row before [-], if not a few."""
-        return self._equal / (self.count - 1) if self._equal >= AGAIN else 0.0
+        equal = self._equal.count
+        return equal / (self.count - 1) if equal >= AGAIN else 0.0
 
     def usual_share(self) -> tuple[float, float]:
         """Return how many rows share each time and the step [s] to the next; 0 if irregular."""
-        usual, step, times = _median(self._shares), self.step, sum(self._shares.values())
+        shares, step = self._shares.counts, self.step
+        usual, times = _median(shares), sum(shares.values())
         near = {
             count: n
-            for count, n in self._shares.items()
+            for count, n in shares.items()
             if abs(count - usual) <= max(1.0, (1.0 - REGULAR) * usual)
         }
         even = {one: n for one, n in self._steps.items() if abs(one / step - 1.0) < 0.5}
@@ -318,19 +345,14 @@ class TimeGate:
 
     def fault_of_order(self) -> tuple[str, str]:
         """Return the fault of times that do not rise, or begin again all the time."""
+        fall = self._falls
         if self.falls:
-            before, time, row = self._first_fall
             return (
-                f'it falls from row to row, the newest row stands first: row {row} has '
-                f'{time:.12g} s after {before:.12g} s',
+                f'it falls from row to row, the newest row stands first: {fall.words}',
                 'turn the order of the rows round',
             )
         if self._unordered or len(self.runs) > RUNS:
-            before, time, row = self._first_fall
-            return (
-                f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',
-                INSTEAD,
-            )
+            return f'it does not rise: {fall.words}', INSTEAD
         if self._half and self._most[0] > DAY:  # midnight is no fall where dates go on
             return (
                 f'it falls by 12 h in row {self._half}, as times of a clock of 12 hours do that '
@@ -341,7 +363,7 @@ class TimeGate:
         if back > 1:
             return (
                 f'it goes back within a second {back} times, first in row '
-                f'{self._first_fall[2]}, as milliseconds do that are written without leading '
+                f'{fall.row}, as milliseconds do that are written without leading '
                 'zeros',
                 INSTEAD,
             )
@@ -356,10 +378,9 @@ class TimeGate:
 
     def fault_of_shared(self) -> tuple[str, str]:
         """Return the fault of times that rows share."""
-        time, _, row = self._first_equal
         return (
             f'{self.shared:.0%} of the rows have the time of the row before, without a rule, such '
-            f'as row {row} with {time:.12g} s',
+            f'as row {self._equal.row} with {self._equal.time:.12g} s',
             f'name a finer time, or {INSTEAD}',
         )
 
