@@ -738,7 +738,8 @@ def _without_last_words(parts: Iterator[bytes], width: int) -> Iterator[bytes]:
         if held:
             yield held
         held = part
-    if rows := LAST_WORDS.sub(b'', held) if width > 1 else held:
+    cut = max(len(held) - SHORT, 0)
+    if rows := held[:cut] + LAST_WORDS.sub(b'', held[cut:]) if width > 1 else held:
         yield rows
 
 
