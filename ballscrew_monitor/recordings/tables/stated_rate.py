@@ -77,13 +77,14 @@ def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
             f'column {short(repr(counter))} counts the samples, and goes from {before:.12g} to '
             f'{after:.12g} in row {row}, which rows at equal distances close up: state {place}'
         )
+    cure = f'name a time as `column` {INSTEAD}, or split the log there'
+    cure = f'state {place}' if counter else cure
     last = table.first_row + table.rows - 1
     if 0 < torn.cells < len(source.head.names) and torn.first + torn.count - 1 < last:
         yield (
             f'row {torn.first} holds {torn.cells} of {len(source.head.names)} cells, and rows '
-            'follow it: samples may be missing there, which rows at equal distances close up: '
-            + (f'state {place}' if counter else f'name a time as `column` {INSTEAD}, or split the')
-            + ' log there' * (not counter)
+            f'follow it: samples may be missing there, which rows at equal distances close up: '
+            f'{cure}'
         )
     yield from _of_twins(mapping, source)
 
@@ -99,6 +100,8 @@ def _jump(source: Source, counter: str) -> tuple[int, float, float] | None:
     """Return the first row in which a counter is not the next number, with that before and it."""
     row, last = source.head.first, math.nan
     for block in source.blocks([counter]):
+        if block[counter].dtype.is_temporal():
+            return None  # times of whole seconds
         cells = block[counter].cast(pl.Float64, strict=False).to_numpy()
         places = np.flatnonzero(np.isfinite(cells))
         values = np.append(last, cells[places])

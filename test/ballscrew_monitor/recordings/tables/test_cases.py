@@ -221,9 +221,12 @@ def test_a_table_without_names_is_refused_and_its_columns_have_numbers(tmp_path,
     path.write_text(''.join(f'{row} \n' for row in rows_of(' ', *columns, texts(speed * 0.1))))
     refused('no_names', guess, path)
     axis = {'speed': {'column': 'column 3', 'unit': 'mm/s'}, 'lead_mm': LEAD}
+    axis |= {'torque': {'column': 'column 4', 'unit': 'N m'}, 'load': {'from': 'torque'}}
     stated = {'rate_Hz': 100.0, 'epoch': '2026-01-05T08:00:00Z'}
     (rows,) = next(read_series(path, make_map({'time': stated, 'axes': {'x': axis}})).blocks())
     np.testing.assert_allclose(rows.columns['x.speed'], speed * math.tau / LEAD, atol=1e-3)
+    force = -0.1 * speed * math.tau / (LEAD / 1e3)  # at an efficiency of 1
+    np.testing.assert_allclose(rows.columns['x.load'], force, atol=0.1)
 
 
 def test_lines_of_an_adapter_hold_what_moves_and_its_load_in_per_cent(tmp_path):

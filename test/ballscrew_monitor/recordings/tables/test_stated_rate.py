@@ -8,12 +8,14 @@ of lost samples by a line `overrun`, behind which the numbers go on with those t
 
 """
 
+import datetime as dt
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 import numpy as np
+import polars as pl
 import pytest
 
 RATE, COUNT = 100.0, 400
@@ -60,6 +62,15 @@ def test_a_row_that_is_cut_off_at_the_end_closes_up_nothing(tmp_path):
     path = sampler(tmp_path / 'log.txt', numbers=True)
     path.write_text(path.read_text() + '400\n')
     assert read_series(path, by_rate(2)).count == COUNT
+
+
+def test_times_of_whole_seconds_that_no_map_names_count_no_samples(tmp_path):
+    path = tmp_path / 'log.parquet'
+    seconds = [dt.datetime(2025, 7, 14) + dt.timedelta(seconds=at) for at in range(COUNT)]
+    pl.DataFrame({'stamp': seconds, 'x speed [mm/s]': SPEED}).write_parquet(path)
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'x speed [mm/s]', 'unit': 'mm/s'}}
+    mapping = make_map({'time': {'rate_Hz': 1.0, 'epoch': EPOCH}, 'axes': {'x': axis}})
+    assert read_series(path, mapping).count == COUNT
 
 
 def groups(path, name, *, shift, step=1.0 / RATE):
