@@ -47,28 +47,26 @@ JSON = re.compile(rb'\{\s*["}]|\[\s*(?:[\[{"\]]|-?\d|null|true|false|NaN)')
 NUMBERS = re.compile(rb'[\[,:"=]\s*-?\d[\d.eE+-]*\s*(?=[\],}"])')
 """Numbers of JSON, and those in quotes."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
-SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
 
 def kind_of(head: bytes) -> str:
     """Return what a file is by its first bytes, empty for rows of cells."""
-    for signature, kind in SIGNATURES:
-        if head.startswith(signature):
-            return kind
-    if head.startswith(b'MATLAB 7.3') or head[512:516] == b'\x89HDF':
-        return 'hdf'
-    text = head.lstrip(b'\xef\xbb\xbf \t\r\n')
-    if JSON.match(text):
-        return 'json'
-    if text.startswith((b'<?xml', b'<')):
-        return 'xml'
-    lines = long_form.first_lines(head)
-    form = long_form.long_form(lines)
-    if line_messages.is_shdr(text) and not (form and form.has_names):
-        return 'shdr'
-    if line_messages.is_echo(lines):
-        return 'echo'
-    return 'long' if form else ''
+    return next((name for name, kind in KINDS.items() if kind.begins(head)), '')
+
+
+def _text(head: bytes) -> bytes:
+    return head.lstrip(b'\xef\xbb\xbf \t\r\n')
+
+
+def _is_hdf(head: bytes) -> bool:
+    return head.startswith((b'\x89HDF', b'MATLAB 7.3')) or head[512:516] == b'\x89HDF'
+
+
+def _is_shdr(head: bytes) -> bool:
+    if not line_messages.is_shdr(_text(head)):
+        return False
+    form = long_form.long_form(long_form.first_lines(head))
+    return not (form and form.has_names)
 
 
 def holds_numbers(head: bytes, kind: str, fewest: int) -> bool:
@@ -185,13 +183,14 @@ def _long(path: Path) -> Signals:
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Kind:
     """
-    A kind of file: what it must be, and the reader of all its signals.
+    A kind of file: how it begins, what it must be, and the reader of all its signals.
 
     A library reads one that `is_binary`. Signals that are `grouped` are called as `run.speed`.
     `names` finds those of cells in a text, whose records may be of more memory than it has bytes.
 
     """
 
+    begins: Callable[[bytes], bool]
     expected: str
     read: Callable[[Path], Signals]
     is_binary: bool = False
@@ -200,48 +199,60 @@ class Kind:
 
 
 KINDS = {
-    'json': Kind(
-        expected='a list of records, lists by the names of signals, or the trace of a data '
-        'recorder',
-        read=json_layouts.read_json,
-        names=re.compile(rb'"((?:[^"\\]|\\.)*)"\s*:', re.S),
-    ),
-    'xml': Kind(
-        expected='a trace with signals, frames and a record for each time',
-        read=_xml,
-        names=re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
-    ),
-    'shdr': Kind(
-        expected='lines of an MTConnect adapter, a time and pairs of a name and a value each',
-        read=lambda path: Signals(frame=line_messages.read_shdr(path), program=ADAPTER),
-    ),
-    'echo': Kind(
-        expected='the messages of one topic, a line each with numbers for all of its joints',
-        read=lambda path: Signals(frame=line_messages.read_echo(path)),
-    ),
-    'long': Kind(
-        expected='a table with a time, the name of a signal and its value in each line', read=_long
-    ),
-    'mat': Kind(
-        expected='a file of MATLAB with arrays of numbers',
-        read=arrays.read_mat,
-        is_binary=True,
-        is_grouped=True,
-    ),
-    'hdf': Kind(
-        expected='a file of HDF5 with arrays of numbers',
-        read=arrays.read_hdf,
-        is_binary=True,
-        is_grouped=True,
-    ),
     'tdms': Kind(
+        begins=lambda head: head.startswith(b'TDSm'),
         expected='a TDMS file with channels of numbers',
         read=waveforms.read_tdms,
         is_binary=True,
         is_grouped=True,
     ),
     'mdf': Kind(
-        expected='an MDF file with signals of numbers', read=waveforms.read_mdf, is_binary=True
+        begins=lambda head: head.startswith(b'MDF     '),
+        expected='an MDF file with signals of numbers',
+        read=waveforms.read_mdf,
+        is_binary=True,
+    ),
+    'mat': Kind(
+        begins=lambda head: head.startswith(b'MATLAB 5.0'),
+        expected='a file of MATLAB with arrays of numbers',
+        read=arrays.read_mat,
+        is_binary=True,
+        is_grouped=True,
+    ),
+    'hdf': Kind(
+        begins=_is_hdf,
+        expected='a file of HDF5 with arrays of numbers',
+        read=arrays.read_hdf,
+        is_binary=True,
+        is_grouped=True,
+    ),
+    'json': Kind(
+        begins=lambda head: bool(JSON.match(_text(head))),
+        expected='a list of records, lists by the names of signals, or the trace of a data '
+        'recorder',
+        read=json_layouts.read_json,
+        names=re.compile(rb'"((?:[^"\\]|\\.)*)"\s*:', re.S),
+    ),
+    'xml': Kind(
+        begins=lambda head: _text(head).startswith(b'<'),
+        expected='a trace with signals, frames and a record for each time',
+        read=_xml,
+        names=re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
+    ),
+    'shdr': Kind(
+        begins=_is_shdr,
+        expected='lines of an MTConnect adapter, a time and pairs of a name and a value each',
+        read=lambda path: Signals(frame=line_messages.read_shdr(path), program=ADAPTER),
+    ),
+    'echo': Kind(
+        begins=lambda head: line_messages.is_echo(long_form.first_lines(head)),
+        expected='the messages of one topic, a line each with numbers for all of its joints',
+        read=lambda path: Signals(frame=line_messages.read_echo(path)),
+    ),
+    'long': Kind(
+        begins=lambda head: long_form.long_form(long_form.first_lines(head)) is not None,
+        expected='a table with a time, the name of a signal and its value in each line',
+        read=_long,
     ),
 }
-"""Kinds of files by the names that `kind_of` returns."""
+"""Kinds of files by the names that `kind_of` returns; the first one counts that begins so."""

@@ -594,19 +594,20 @@ class _Above:
 
     def _names(self) -> tuple[list[str], bool]:
         """Return what the columns are called, and whether anything calls them so."""
-        if 'name' in self.rows:
-            row = self.rows['name']
-            plain = [one for one in row if property_of(one) != 'name']
-            symbols = self.rows.get('symbol', [])
-            if len(set(plain)) < len(plain) and len(symbols) == len(row):
-                row = symbols
-            return row, True
-        if 'symbol' in self.rows:
-            return self.rows['symbol'], True
-        for find in (self._row_of_names, self._comment, self._numbered, self._below_each_other):
-            if names := find():
-                return names, True
-        return [], False
+        by_their_place = (self._labelled, self._symbols, self._row_of_names)
+        by_their_form = (self._comment, self._numbered, self._below_each_other)
+        named = (find() for find in (*by_their_place, *by_their_form))
+        names = next(filter(None, named), [])
+        return names, bool(names)
+
+    def _labelled(self) -> list[str]:
+        """Return the row that is labelled as names, or the longer symbols where these are few."""
+        row, symbols = self.rows.get('name', []), self._symbols()
+        plain = [one for one in row if property_of(one) != 'name']
+        return symbols if len(set(plain)) < len(plain) and len(symbols) == len(row) else row
+
+    def _symbols(self) -> list[str]:
+        return self.rows.get('symbol', [])
 
     def _row_of_names(self) -> list[str]:
         """Return the lowest row that names most columns: units and remarks may stand below it."""
