@@ -207,7 +207,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     _look_at_slopes(held, turns, times)
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
-    period = next(one.usual_period for one in times if one.group.is_motion)
+    period = next(one.mean_period for one in times if one.group.is_motion)
     notes += [f'log {path}: {why}' for why in [other_period(source.head, mapping, period)] if why]
     unread, more_rows = table.source.unread(columns), table.source.rows_alike(columns)
     return Series(

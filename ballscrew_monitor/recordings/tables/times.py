@@ -386,6 +386,11 @@ class Times:
         """Return the time between rows [s] that half of them keep."""
         return self._steps.median / SECOND
 
+    @property
+    def mean_period(self) -> float:
+        """Return the time between rows [s] without gaps, whose stamps may be rounded."""
+        return self._steps.mean / SECOND
+
     def notes(self) -> list[str]:
         """Return what is odd about the times, a sentence each."""
         found, log = [], f'log {self._table.path}:'
@@ -647,6 +652,13 @@ class Steps:
             np.cumsum(self._counts), [(total - 1) // 2, total // 2], side='right'
         )
         return float(np.mean(self._sums[middle] / self._counts[middle]))
+
+    @property
+    def mean(self) -> float:
+        """Return the mean time between rows [ns] without those above three of the usual one."""
+        within = (self._counts > 0) & (self._sums <= 3.0 * self.median * self._counts)
+        counts = int(self._counts[within].sum())
+        return float(self._sums[within].sum()) / counts if counts else 0.0
 
     def gaps(self) -> int:
         """Return how many steps are huge beside the usual one."""

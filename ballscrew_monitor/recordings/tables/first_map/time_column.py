@@ -215,16 +215,19 @@ class TimeColumn:
         if unit:
             self.unit = SCALES[unit][0]
             self.step, self.times = step * self.unit, values * self.unit
-        column = None if unit and self._is_denied(one.column) else one.column
+        column = None if unit and self._is_denied(one.column, known * self.unit) else one.column
         return {'column': column} | ({} if why else {'unit': unit or None})
 
-    def _is_denied(self, column: str) -> bool:
-        """Return True, and let the map name the time, if the head states another rate than it."""
-        period = self._log.head.period
-        if math.isnan(period) or abs(self.step / period - 1.0) <= estimates.NEAR:
+    def _is_denied(self, column: str, times: Array) -> bool:
+        """Return True, and ask for the time, if the head states another rate than times [s]."""
+        period, steps = self._log.head.period, np.diff(times)
+        usual = steps[(steps > 0.0) & (steps < estimates.LONG * np.median(steps))]
+        # Stamps may be rounded, and rows that share one will be spread.
+        step = float(usual.mean()) if len(usual) and not (steps == 0.0).any() else self.step
+        if math.isnan(period) or abs(step / period - 1.0) <= estimates.NEAR:
             return False
         self._draft.unstated.append(
-            f'state time.column: {column} in the map, by which the rows are {self.step:.4g} s '
+            f'state time.column: {column} in the map, by which the rows are {step:.4g} s '
             f'apart, or time.rate_Hz: {1.0 / period:.6g} instead of column and unit: the head '
             f'states a period of {period:.4g} s'
         )

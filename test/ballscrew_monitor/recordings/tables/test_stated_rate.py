@@ -132,6 +132,22 @@ def test_a_head_of_another_rate_than_the_times_is_asked_about(stated, period, tm
     assert (says('by_map', key='time.rate_Hz', period='0.005') in notes) is (period is None)
 
 
+@pytest.mark.parametrize('unit', ['s', 'ms'])
+def test_stamps_that_are_rounded_keep_the_rate_of_the_head(unit, tmp_path):
+    """Rows of 400 Hz with stamps of milliseconds are 2 and 3 ms apart."""
+    path = tmp_path / 'log.csv'
+    stamps = [round(2.5 * at + 1e-9) for at in range(COUNT)]
+    factor = {'s': 1e-3, 'ms': 1.0}[unit]
+    lines = [f'{factor * one:.3f};{speed:.4f}' for one, speed in zip(stamps, SPEED, strict=True)]
+    head = ['# Sample rate: 400 Hz', f'Time [{unit}];X speed [mm/s]']
+    path.write_text('\n'.join([*head, *lines]) + '\n')
+    made = guess(path)
+    assert made.content['time']['column'] == f'Time [{unit}]'
+    assert not any(
+        'states a period' in note for note in read_series(path, make_map(made.content)).notes
+    )
+
+
 def test_a_counter_beside_a_stated_rate_of_the_head_is_offered_a_scale(tmp_path, says):
     path = tmp_path / 'log.csv'
     lines = [f'{one};{speed:.4f}' for one, speed in enumerate(SPEED)]
