@@ -318,7 +318,7 @@ class _Block:
 
     def _rows_with_words(self, kinds: Sequence[Sequence[str]]) -> int:
         """Return how many rows before the begin hold words for numbers, as rows behind it do."""
-        rows = self.rows[self.begin :]
+        rows = self.rows[slice(self.begin, None)]
         words = [
             {row[column] for row in rows if len(row) > column} for column in range(self.width)
         ]

@@ -34,7 +34,7 @@ def joined_sections(path: Path, content: bytes) -> tuple[bytes, int]:
         return content, max(len(ends) - 1, 0)
     begins = [_begin(lines, end) for end in ends[1:]]
     first, *others = [
-        {**_fields(lines[begin:end]), b'names': _cells(b''.join(lines[end + 1 : end + 2]))}
+        {**_fields(lines[begin:end]), b'names': _cells(b''.join(lines[end:][1:2]))}
         for begin, end in zip(begins, ends[1:], strict=True)
     ]
     for end, head in zip(ends[2:], others, strict=True):
