@@ -8,9 +8,9 @@ Temperatures are kelvin inside and degC on file.
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, MISSING
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from surrogate.files import InputError
 from surrogate.files.datasheet import (
@@ -44,6 +44,7 @@ __all__ = [
     'screw_and_oil',
 ]
 
+Sheet = TypeVar('Sheet', 'Screw', 'Lubricant')
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
 NUTS = ('double', 'offset', 'oversize', 'plain')
 """Nuts of catalogues, by what preloads them."""
@@ -479,14 +480,22 @@ def screw_and_oil(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
     try:
         screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
         for spec in fields(Screw):
-            if 'block' in spec.metadata and screw[spec.name] is not None:
+            if 'block' in spec.metadata and screw.get(spec.name) is not None:
                 screw[spec.name] = spec.metadata['block'](**screw[spec.name])
-        return Screw(**screw), Lubricant(**lubricant)
+        return _whole(Screw, 'screw', screw), _whole(Lubricant, 'oil', lubricant)
     except (KeyError, TypeError, AttributeError, OverflowError) as error:
         raise InputError(
             f'the header of the surface states no whole screw and oil ({error}): build the '
             'surface again'
         ) from None
+
+
+def _whole(sheet: type[Sheet], name: str, values: Mapping[str, Any]) -> Sheet:
+    """Return the sheet of all of these values; raises TypeError naming those that lack."""
+    needed = {spec.name for spec in fields(sheet) if spec.default is MISSING}
+    if lacking := sorted(needed - {*values}):
+        raise TypeError(f"the {name} lacks '{', '.join(lacking)}'")
+    return sheet(**values)
 
 
 def load_screw(name_or_path: str) -> Screw:
