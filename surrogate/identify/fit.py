@@ -132,27 +132,32 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         return start
 
     def cost(factor: float) -> float:
-        values, _ = _fit(problem, at(factor), {'onset_factor': ''}, sigma)
-        return float(np.sum((problem.residual(values) / sigma) ** 2))
+        faded, start = problem.with_best_fade(at(factor), (), sigma)
+        values, _ = _fit(faded, start, {'onset_factor': ''}, sigma)
+        return float(np.sum((faded.residual(values) / sigma) ** 2))
 
     def fitted(start: Array, held: dict[str, str]) -> Identification:
-        held = problem.without_effect(start) | held
-        values, converged = _fit(problem, start, held, sigma)
-        return replace(_result(problem, values, held, sigma), converged=converged)
+        faded, start = problem.with_best_fade(start, held, sigma)
+        held = faded.without_effect(start) | held
+        values, converged = _fit(faded, start, held, sigma)
+        return replace(_result(faded, values, held, sigma), converged=converged)
 
     def without_onset(factor: float, reason: str) -> Identification:
         kept = 'not told without the onset: kept as in the datasheet'
         return fitted(at(factor), {'onset_factor': reason, 'asperity_friction': kept})
 
     def along(scan: OnsetScan) -> Identification:
-        return fitted(at(scan.best), {}) if scan.closed else without_onset(*scan.bound(stated))
+        if scan.calibrates:
+            return fitted(at(scan.best), {})
+        return without_onset(*scan.bound(stated))
 
-    freedom, stated = len(sigma) - len(problem.names), float(problem.start[place])
+    # The fade is fitted, too.
+    freedom, stated = len(sigma) - len(problem.names) - 1, float(problem.start[place])
     scan = scan_onset(cost, freedom, problem.contacts.screw.roughness.lay)
     identified = along(scan)
     slowest = int(np.abs(problem.run.speed).argmin())
     upturn = identified.contacts[slowest] - identified.contacts.min()
-    if scan.closed and not upturn > identified.band[slowest]:
+    if scan.calibrates and not upturn > identified.band[slowest]:
         # The curvature of the rolling loss alone is no sign of contact.
         scan = replace(scan, low=0.0)
         identified = along(scan)
@@ -161,10 +166,10 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     )
     if refusal:
         return replace(without_onset(stated, refusal), onset_refused=True)
-    if not scan.closed:
+    if not scan.calibrates:
         return identified
     onset = identified.estimates[place]
-    low, high = scan.interval(onset.value, freedom)
+    low, high = scan.interval(onset.value)
     error = onset.value * math.log(high / low) / (2 * student_factor(freedom))
     onset = replace(onset, low=low, high=high, standard_error=error, reason='')
     estimates = [*identified.estimates]

@@ -4,9 +4,10 @@
 Onset factor of a machine from the upturn of its torque at low speed: profile, interval, bound.
 
 One lumped factor on the onset speed: it holds what sheet, running in, film floor and law are off
-by together. The upturn lies well below the onset, at which RCS is 0.01 and no torque shows, so
-the interval adds the scatter of marched strips about the curve of the law by which the onset is
-extrapolated.
+by together. Seals whose drag fades with the speed turn the torque up, too, so at every factor they
+fade as fits best: the interval holds what any of them allows. The upturn lies well below the
+onset, at which RCS is 0.01 and no torque shows, so the interval adds the scatter of marched strips
+about the curve of the law by which the onset is extrapolated.
 
 """
 
@@ -34,6 +35,8 @@ EXTRAPOLATION = {'isotropic': 0.16, 'longitudinal': 0.41, 'transverse': 0.41}
 """Standard deviation of the logarithm of the onset between a marched strip and the curve of the
 law laid through its RCS at a half and a quarter of that speed, by the lay: of 58 and 17 marches
 [-]."""
+WIDEST = 2.5
+"""Band of nine of ten [-] beyond which a run tells no more than the law does without one."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,7 +45,7 @@ class OnsetScan:
     Sum of squared residuals at each of `SCANNED`, and where it is least.
 
     Best factor [-] and ends of the interval by the profile [-], 0 and infinity where the data set
-    none; standard deviation of the `extrapolation` to the onset [-].
+    none; degrees of freedom; standard deviation of the `extrapolation` to the onset [-].
 
     """
 
@@ -50,32 +53,46 @@ class OnsetScan:
     best: float
     low: float
     high: float
+    freedom: int
     extrapolation: float
 
-    def interval(self, value: float, freedom: int) -> tuple[float, float]:
+    def interval(self, value: float) -> tuple[float, float]:
         """Return the ends of the 95 % interval about a value [-], extrapolation and all."""
-        wide = student_factor(freedom) * self.extrapolation
+        wide = student_factor(self.freedom) * self.extrapolation
         ends = math.log(value / self.low), math.log(self.high / value)
         below, above = (math.hypot(end, wide) for end in ends)
         return value * math.exp(-below), value * math.exp(above)
 
     def bound(self, stated: float) -> tuple[float, str]:
-        """Return factor [-] and reason where one end is open; the stated factor if it may be."""
+        """Return factor [-] and reason where an end is open or the interval is too wide."""
         wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * self.extrapolation)
-        if not self.low and math.isinf(self.high):
-            return stated, 'the torque tells nothing of it: kept as in the datasheet'
-        if not self.low:
-            most = self.high * wide
-            reason = f'the torque does not turn up at low speed: at most {most:.3g} (95 %)'
-            return min(stated, most), reason
-        least = self.low / wide
-        reason = f'the torque does not rise at high speed: at least {least:.3g} (95 %)'
-        return max(stated, least), reason
+        least, most = self.low / wide, self.high * wide
+        if self.closed:
+            least, most = self.interval(self.best)
+            reason = (
+                f'seals that fade by other speeds leave {least:.3g} to {most:.3g} (95 %), allowed '
+                f'for a calibration is a band of {WIDEST:g} in nine of ten'
+            )
+        elif self.low:
+            reason = f'the torque does not rise at high speed: at least {least:.3g} (95 %)'
+        elif math.isfinite(self.high):
+            reason = (
+                'the torque does not turn up at low speed, or no more than a seal that fades: at '
+                f'most {most:.3g} (95 %)'
+            )
+        else:
+            reason = 'the torque tells nothing of it: kept as in the datasheet'
+        return min(max(stated, least), most), reason
 
     @property
     def closed(self) -> bool:
         """Return True if the data set both ends."""
         return self.low > 0 and math.isfinite(self.high)
+
+    @property
+    def calibrates(self) -> bool:
+        """Return True if the interval is narrow enough to be of use."""
+        return self.closed and calibrated_band(*self.interval(self.best)) <= WIDEST
 
 
 def scan_onset(cost: Callable[[float], float], freedom: int, lay: Lay) -> OnsetScan:
@@ -95,6 +112,7 @@ def scan_onset(cost: Callable[[float], float], freedom: int, lay: Lay) -> OnsetS
         best=float(SCANNED[best]),
         low=_crossing(over[best::-1], SCANNED[best::-1], 0.0),
         high=_crossing(over[best:], SCANNED[best:], math.inf),
+        freedom=freedom,
         extrapolation=EXTRAPOLATION[lay],
     )
 
@@ -116,16 +134,19 @@ def refusal_of(problem: DragProblem, scan: OnsetScan, values: Array) -> str:
     Return why the onset among the `values` of a fit cannot be that of the screw, else nothing.
 
     Drag beside the contacts that fades with the speed takes the friction to its bound, or the
-    onset to speeds that were not measured. An upper bound of the onset asks for neither.
+    onset to speeds that were not measured. What leaves its lower end open, or both wide, asks for
+    neither.
 
     """
-    if not scan.low:
+    if not scan.calibrates and not (scan.low and math.isinf(scan.high)):
         return ''
     slowest, *_, fastest = np.sort(np.abs(problem.run.speed)) / RPM
-    factor, bounds = float(values[problem.names.index('onset_factor')]), problem.at_bounds(values)
+    factor, bounds = scan.best, problem.at_bounds(values)
+    if scan.calibrates:
+        factor = float(values[problem.names.index('onset_factor')])
     onset = onset_speeds(problem.contacts, problem.run, (factor, math.nan, math.nan))[0] / RPM
     causes = []
-    if scan.closed and 'asperity_friction' in bounds:
+    if scan.calibrates and 'asperity_friction' in bounds:
         causes.append(f'asperity_friction is {bounds["asperity_friction"]}')
     if not slowest <= onset <= fastest:
         causes.append(

@@ -8,11 +8,13 @@ friction and onset act through the contacts.
 
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Sequence
+from dataclasses import dataclass, replace
+import itertools
 import math
 
 import numpy as np
+from scipy.optimize import nnls
 from surrogate.files import InputError
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.model import (
@@ -29,8 +31,10 @@ SPARE_POINTS, SPEED_SPAN = 2, 2.0
 """Points beyond the number of parameters, largest speed over smallest [-]: the least accepted."""
 LARGEST_TORQUE = 1e3
 """Upper bound of both parasitic parts, that of the datasheet [N m], [N m s/rad]."""
-SEAL_SLIDING = 0.015
-"""Sliding speed over which the boundary friction of a seal fades [m/s], at the pitch radius."""
+SEAL_SLIDING = np.geomspace(0.003, 0.5, 16)
+"""Sliding speeds over which the boundary friction of a seal may fade [m/s], at the pitch radius."""
+SEAL_POWERS = (0.5, 1.0, 2.0)
+"""Powers of the speed by which it may fade [-]: Armstrong-Helouvry et al. (1994), table 1."""
 ONSET_SPEEDS, SAME_SPEED = 6, 1.05
 """Speeds from which on an onset is fitted; ratio from which on two of them differ [-]."""
 STEP = 1e-3
@@ -47,7 +51,7 @@ class DragProblem:
     A run, its contacts, and the parameters in SI units.
 
     Names, size by which each is scaled, bounds, value in the datasheet; torque of the load at
-    every point [N m].
+    every point [N m]; share of the boundary friction of a seal that is left there [-].
 
     """
 
@@ -59,6 +63,7 @@ class DragProblem:
     high: Array
     start: Array
     load_torque: Array
+    fade: Array
 
     def torque(self, values: Array) -> Array:
         """Return the torque on the screw [N m]."""
@@ -67,14 +72,9 @@ class DragProblem:
             run.direction * (self.contact_torque(values) + given['parasitic_torque'])
             + given['parasitic_torque_rate'] * run.speed
             + given.get('torque_offset', 0.0)
-            + given.get('seal_torque', 0.0) * self._seal()
+            + given.get('seal_torque', 0.0) * run.direction * self.fade
             + self.load_torque
         )
-
-    def _seal(self) -> Array:
-        """Return the share of the friction of a seal that fades with the speed, signed [-]."""
-        sliding = self.contacts.screw.pitch_radius * np.abs(self.run.speed)
-        return self.run.direction * np.exp(-sliding / SEAL_SLIDING)
 
     def contact_torque(self, values: Array) -> Array:
         """Return the friction torque of the contacts [N m]."""
@@ -97,7 +97,7 @@ class DragProblem:
             'parasitic_torque': run.direction,
             'parasitic_torque_rate': run.speed,
             'torque_offset': np.ones_like(run.speed),
-            'seal_torque': self._seal(),
+            'seal_torque': run.direction * self.fade,
         }
         columns = [
             exact[name] if name in exact else run.direction * self._slope(values, place)
@@ -112,6 +112,34 @@ class DragProblem:
         down[place] = max(values[place] - step, self.low[place])
         rise = self.contact_torque(up) - self.contact_torque(down)
         return np.asarray(rise / (up[place] - down[place]))
+
+    def with_best_fade(
+        self, start: Array, held: Container[str], sigma: Array
+    ) -> tuple['DragProblem', Array]:
+        """
+        Return the problem whose seal fades as the points ask for, and what they ask of the rest.
+
+        Of all `SEAL_SLIDING` and `SEAL_POWERS`, by squares over `sigma` [N m] that are least at the
+        onset factor of `start`, the torque being linear in all else that is not `held`.
+
+        """
+        outer = ('onset_factor', 'seal_torque')
+        free = [place for place, name in enumerate(self.names) if name not in (*held, *outer)]
+        free.append(self.names.index('seal_torque'))
+        either, least = np.isinf(self.low[free]), start.copy()
+        least[free] = np.where(either, 0.0, self.low[free])
+        rest, room = self.residual(least) / sigma, (self.high - least)[free]
+        columns = self.jacobian(least)[:, free] / sigma[:, None]
+        sliding = self.contacts.screw.pitch_radius * np.abs(self.run.speed)
+        best, values, squares = self, least, math.inf
+        for power, over in itertools.product(SEAL_POWERS, SEAL_SLIDING):
+            fade = np.exp(-((sliding / over) ** power))
+            columns[:, -1] = self.run.direction * fade / sigma
+            amounts, norm = _bounded(columns, rest, room, either)
+            if norm < squares:
+                best, values, squares = replace(self, fade=fade), least.copy(), norm
+                values[free] += amounts
+        return best, values
 
     def without_effect(self, values: Array) -> dict[str, str]:
         """Return the parameters on which no point depends near `values`, with the reason."""
@@ -133,6 +161,20 @@ class DragProblem:
             elif values[place] >= self.high[place] - near:
                 reasons[name] = f'at its upper bound {self.high[place]:g}, the data ask for more'
         return reasons
+
+
+def _bounded(columns: Array, rest: Array, room: Array, either: Array) -> tuple[Array, float]:
+    """Return the amounts of columns, from 0 to `room` or of `either` sign, and the norm left."""
+    amounts, norm = nnls(np.hstack([columns, -columns[:, either]]), rest)
+    own, opposite = np.split(amounts, [len(room)])
+    own[either] -= opposite
+    over = own > room
+    if over.any():
+        # An end that is passed without it is where the least squares with it lie.
+        rest = rest - columns[:, over] @ room[over]
+        own[~over], norm = _bounded(columns[:, ~over], rest, room[~over], either[~over])
+        own[over] = room[over]
+    return own, float(norm)
 
 
 def drag_problem(
@@ -157,6 +199,7 @@ def drag_problem(
         high=np.array(high),
         start=np.clip(start, low, high),
         load_torque=run.load * screw.lead / (2 * math.pi),
+        fade=np.zeros_like(run.speed),
     )
     _check(problem)
     return problem
