@@ -50,8 +50,8 @@ FADING = 0.0035, 0.3
 FADES = {
     'hyperbola': lambda over: 1 / (1 + over),
     'bell': lambda over: 1 / (1 + over**2),
-    'stretched': lambda over: np.exp(-(over**0.7)),
-    'steep': lambda over: np.exp(-(over**1.4)),
+    'arch': lambda over: 1 / np.cosh(over),
+    'two lips': lambda over: 0.5 * np.exp(-over) + 0.5 * np.exp(-over / 5),
 }
 """Shares of the fading drag that are left, over the speed in units of that by which it fades [-]."""
 LATE = 0.1, 0.3

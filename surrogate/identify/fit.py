@@ -21,7 +21,7 @@ from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import correlation, covariance, student_factor, undetermined
 from surrogate.identify.model import ContactModel
 from surrogate.identify.onset import OnsetScan, refusal_of, scan_onset
-from surrogate.identify.problem import drag_problem, DragProblem
+from surrogate.identify.problem import drag_problem, DragProblem, FADE_VALUES
 from surrogate.parameters import Screw
 
 Loss = Literal['linear', 'soft_l1']
@@ -131,10 +131,11 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         start[place] = factor
         return start
 
-    def cost(factor: float) -> float:
+    def cost(factor: float) -> tuple[float, float]:
         faded, start = problem.with_best_fade(at(factor), (), sigma)
         values, _ = _fit(faded, start, {'onset_factor': ''}, sigma)
-        return float(np.sum((faded.residual(values) / sigma) ** 2))
+        residual = faded.residual(values) / sigma
+        return float(residual @ residual), faded.misfit(residual)
 
     def fitted(start: Array, held: dict[str, str]) -> Identification:
         faded, start = problem.with_best_fade(start, held, sigma)
@@ -151,8 +152,8 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
             return fitted(at(scan.best), {})
         return without_onset(*scan.bound(stated))
 
-    # The fade is fitted, too.
-    freedom, stated = len(sigma) - len(problem.names) - 1, float(problem.start[place])
+    freedom = len(sigma) - len(problem.names) - FADE_VALUES
+    stated = float(problem.start[place])
     scan = scan_onset(cost, freedom, problem.contacts.screw.roughness.lay)
     identified = along(scan)
     slowest = int(np.abs(problem.run.speed).argmin())

@@ -23,7 +23,7 @@ VISCOSITY_BOUNDS = (0.5, 2.0)
 """Viscosity factor [-]: beyond, the sheet is that of another oil or the temperature is wrong."""
 FRICTION_BOUNDS = (0.02, 0.3)
 """Boundary friction coefficient [-] of steel in mineral oil, dry of additives to badly fed."""
-ONSET_FRICTIONS = (0.05, 0.2)
+ONSET_FRICTIONS = (0.05, 0.16)
 """
 The same where the onset is identified [-]: below, nothing turns the torque up.
 

@@ -95,17 +95,21 @@ class OnsetScan:
         return self.closed and calibrated_band(*self.interval(self.best)) <= WIDEST
 
 
-def scan_onset(cost: Callable[[float], float], freedom: int, lay: Lay) -> OnsetScan:
+def scan_onset(
+    cost: Callable[[float], tuple[float, float]], freedom: int, lay: Lay
+) -> OnsetScan:
     """
     Return the profile of a fit over the onset factor, with `freedom` degrees of freedom.
 
-    `cost` fits the rest at a factor [-] and returns the sum of squared residuals. The interval
-    holds the factors whose cost is within t^2 of the least one's mean square.
+    `cost` fits the rest at a factor [-] and returns the sum of squared residuals and the mean
+    square of the misfit. The interval holds the factors whose sum is within t^2 of the least one,
+    in units of the larger one of its mean square and the misfit.
 
     """
-    costs = np.array([cost(factor) for factor in SCANNED.tolist()])
+    costs, misfits = np.array([cost(factor) for factor in SCANNED.tolist()]).T
     best = int(costs.argmin())
-    excess = (costs - costs[best]) * freedom / max(costs[best], np.finfo(float).tiny)
+    variance = np.fmax(costs[best] / freedom, misfits[best])
+    excess = (costs - costs[best]) / max(variance, np.finfo(float).tiny)
     over = excess - student_factor(freedom) ** 2
     return OnsetScan(
         costs=costs,

@@ -12,6 +12,7 @@ from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 import itertools
 import math
+from operator import itemgetter
 
 import numpy as np
 from scipy.optimize import nnls
@@ -33,6 +34,10 @@ LARGEST_TORQUE = 1e3
 """Upper bound of both parasitic parts, that of the datasheet [N m], [N m s/rad]."""
 SEAL_SLIDING = np.geomspace(0.003, 0.5, 16)
 """Sliding speeds over which the boundary friction of a seal may fade [m/s], at the pitch radius."""
+FADE_VALUES = 2
+"""Sliding speed and power, which are fitted beside the named parameters."""
+FINER = 2.0 ** np.array([0.25, 0.125, 0.0625])
+"""Factors on the sliding speed that fits best, and roots of those on the power [-]."""
 SEAL_POWERS = (0.5, 1.0, 2.0)
 """Powers of the speed by which it may fade [-]: Armstrong-Helouvry et al. (1994), table 1."""
 ONSET_SPEEDS, SAME_SPEED = 6, 1.05
@@ -131,15 +136,39 @@ class DragProblem:
         rest, room = self.residual(least) / sigma, (self.high - least)[free]
         columns = self.jacobian(least)[:, free] / sigma[:, None]
         sliding = self.contacts.screw.pitch_radius * np.abs(self.run.speed)
-        best, values, squares = self, least, math.inf
-        for power, over in itertools.product(SEAL_POWERS, SEAL_SLIDING):
+
+        def faded(power: float, over: float) -> tuple[float, float, float, Array, Array]:
             fade = np.exp(-((sliding / over) ** power))
             columns[:, -1] = self.run.direction * fade / sigma
             amounts, norm = _bounded(columns, rest, room, either)
-            if norm < squares:
-                best, values, squares = replace(self, fade=fade), least.copy(), norm
-                values[free] += amounts
-        return best, values
+            return norm, power, over, fade, amounts
+
+        tried = [faded(*one) for one in itertools.product(SEAL_POWERS, SEAL_SLIDING.tolist())]
+        for step in FINER:
+            _, power, over, *_ = min(tried, key=itemgetter(0))
+            tried += [faded(power, over * step), faded(power, over / step)]
+            _, power, over, *_ = min(tried, key=itemgetter(0))
+            tried += [faded(power * step**2, over), faded(power / step**2, over)]
+        *_, fade, amounts = min(tried, key=itemgetter(0))
+        least[free] += amounts
+        return replace(self, fade=fade), least
+
+    def misfit(self, residual: Array) -> float:
+        """
+        Return the mean square of what the points of one speed have in common [-].
+
+        Of a `residual` over the standard deviation [-]; both directions of one speed repeat an
+        error of the model, and not the noise. NaN for too few speeds.
+
+        """
+        order = np.argsort(np.abs(self.run.speed))
+        speed = np.abs(self.run.speed)[order]
+        group = np.cumsum(np.append(0, speed[1:] >= SAME_SPEED * speed[:-1]))
+        along = np.bincount(group, (self.run.direction * residual)[order])
+        # An offset is what directions do not have in common; the fade is fitted, too.
+        freedom = len(along) - len(self.names) - FADE_VALUES + ('torque_offset' in self.names)
+        squares = float(np.sum(along**2 / np.bincount(group)))
+        return squares / freedom if freedom > 0 else math.nan
 
     def without_effect(self, values: Array) -> dict[str, str]:
         """Return the parameters on which no point depends near `values`, with the reason."""

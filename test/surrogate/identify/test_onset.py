@@ -108,7 +108,7 @@ def test_a_parabola_has_the_interval_of_its_error():
     width = 0.3 * student_factor(FREEDOM)
     assert math.log(scan.high) == pytest.approx(width, rel=0.02)
     assert math.log(scan.low) == pytest.approx(-width, rel=0.02)
-    low, high = scan.interval(1.0, FREEDOM)
+    low, high = scan.interval(1.0)
     extrapolated = student_factor(FREEDOM) * math.hypot(0.3, EXTRAPOLATION['isotropic'])
     assert math.log(high / low) == pytest.approx(2 * extrapolated, rel=0.02)
 
@@ -116,7 +116,7 @@ def test_a_parabola_has_the_interval_of_its_error():
 def test_the_extrapolation_to_the_onset_is_less_sure_with_a_lay():
     """Twice as wide and more, in the interval and in a bound."""
     scans = [scan_onset(parabola(1.0, 0.01), FREEDOM, lay) for lay in EXTRAPOLATION]
-    isotropic, *ridged = (np.ptp(np.log(scan.interval(1.0, FREEDOM))) for scan in scans)
+    isotropic, *ridged = (np.ptp(np.log(scan.interval(1.0))) for scan in scans)
     assert min(ridged) > 2 * isotropic
     opened = [replace(scan, low=0.0).bound(10.0)[0] for scan in scans]
     assert min(opened[1:]) > opened[0]
@@ -154,7 +154,7 @@ def test_an_open_end_is_a_bound(centre, stated, kept, words):
 
 
 def test_a_flat_profile_tells_nothing():
-    flat = OnsetScan(costs=np.ones(3), best=1.0, low=0.0, high=math.inf, extrapolation=0.16)
+    flat = OnsetScan(costs=np.ones(3), best=1.0, low=0.0, high=math.inf, freedom=18, extrapolation=0.16)
     value, reason = flat.bound(0.7)
     assert value == 0.7
     assert 'tells nothing' in reason
