@@ -162,9 +162,8 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         # The curvature of the rolling loss alone is no sign of contact.
         scan = replace(scan, low=0.0)
         identified = along(scan)
-    refusal = refusal_of(
-        problem, scan, np.array([estimate.value for estimate in identified.estimates])
-    )
+    values = np.array([estimate.value for estimate in identified.estimates])
+    refusal = refusal_of(problem, scan, values, problem.run.torque - identified.after, sigma)
     if refusal:
         return replace(without_onset(stated, refusal), onset_refused=True)
     if not scan.calibrates:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import math
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 from scipy.stats import t as student
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
@@ -35,6 +36,11 @@ EXTRAPOLATION = {'isotropic': 0.16, 'longitudinal': 0.41, 'transverse': 0.41}
 """Standard deviation of the logarithm of the onset between a marched strip and the curve of the
 law laid through its RCS at a half and a quarter of that speed, by the lay: of 58 and 17 marches
 [-]."""
+MOST_SEAL, WORST = 0.5, 1.5
+"""Fading drag over the constant one, as tried in `studies/onset_machines.py`, and residual without
+an onset over that with the best one [-]: the most that is accepted."""
+SMALL = 0.01
+"""Root mean square of a residual over the mean torque [-] that is accepted anyway."""
 WIDEST = 2.5
 """Band of nine of ten [-] beyond which a run tells no more than the law does without one."""
 
@@ -95,9 +101,7 @@ class OnsetScan:
         return self.closed and calibrated_band(*self.interval(self.best)) <= WIDEST
 
 
-def scan_onset(
-    cost: Callable[[float], tuple[float, float]], freedom: int, lay: Lay
-) -> OnsetScan:
+def scan_onset(cost: Callable[[float], tuple[float, float]], freedom: int, lay: Lay) -> OnsetScan:
     """
     Return the profile of a fit over the onset factor, with `freedom` degrees of freedom.
 
@@ -111,9 +115,11 @@ def scan_onset(
     variance = np.fmax(costs[best] / freedom, misfits[best])
     excess = (costs - costs[best]) / max(variance, np.finfo(float).tiny)
     over = excess - student_factor(freedom) ** 2
+    near = np.log(SCANNED[[max(best - 1, 0), min(best + 1, len(SCANNED) - 1)]])
+    least = minimize_scalar(lambda x: cost(math.exp(x))[0], bounds=near, method='bounded')
     return OnsetScan(
         costs=costs,
-        best=float(SCANNED[best]),
+        best=math.exp(least.x) if least.fun < costs[best] else float(SCANNED[best]),
         low=_crossing(over[best::-1], SCANNED[best::-1], 0.0),
         high=_crossing(over[best:], SCANNED[best:], math.inf),
         freedom=freedom,
@@ -133,26 +139,39 @@ def _crossing(over: Array, factors: Array, none: float) -> float:
     return float(np.exp(low + share * (high - low)))
 
 
-def refusal_of(problem: DragProblem, scan: OnsetScan, values: Array) -> str:
+def refusal_of(
+    problem: DragProblem, scan: OnsetScan, values: Array, residual: Array, sigma: Array
+) -> str:
     """
     Return why the onset among the `values` of a fit cannot be that of the screw, else nothing.
 
-    Drag beside the contacts that fades with the speed takes the friction to its bound, or the
-    onset to speeds that were not measured. What leaves its lower end open, or both wide, asks for
-    neither.
+    Drag beside the contacts that fades with the speed takes the friction to its bound, the onset
+    to speeds that were not measured, or most of the drag. Where an end is open, or both are wide,
+    the `residual` that the values leave is held against the least one, both over `sigma` [N m].
 
     """
-    if not scan.calibrates and not (scan.low and math.isinf(scan.high)):
-        return ''
+    given = dict(zip(problem.names, values.tolist(), strict=True))
     slowest, *_, fastest = np.sort(np.abs(problem.run.speed)) / RPM
     factor, bounds = scan.best, problem.at_bounds(values)
-    if scan.calibrates:
-        factor = float(values[problem.names.index('onset_factor')])
-    onset = onset_speeds(problem.contacts, problem.run, (factor, math.nan, math.nan))[0] / RPM
     causes = []
-    if scan.calibrates and 'asperity_friction' in bounds:
-        causes.append(f'asperity_friction is {bounds["asperity_friction"]}')
-    if not slowest <= onset <= fastest:
+    if scan.calibrates:
+        factor = given['onset_factor']
+        if 'asperity_friction' in bounds:
+            causes.append(f'asperity_friction is {bounds["asperity_friction"]}')
+        if given['seal_torque'] > MOST_SEAL * given['parasitic_torque']:
+            causes.append(
+                f'seal_torque is {given["seal_torque"]:.3g} N m, allowed is {MOST_SEAL:g} of the '
+                f'parasitic torque of {given["parasitic_torque"]:.3g} N m'
+            )
+    elif (
+        np.sum((residual / sigma) ** 2) > WORST**2 * scan.costs.min()
+        and np.mean(residual**2) > (SMALL * np.abs(problem.run.torque).mean()) ** 2
+    ):
+        causes.append(
+            f'with the friction of the datasheet the residual is {WORST:g} times the least or more'
+        )
+    onset = onset_speeds(problem.contacts, problem.run, (factor, math.nan, math.nan))[0] / RPM
+    if scan.low and not slowest <= onset <= fastest:
         causes.append(
             f'contact would begin at {digits(onset)} rev/min, measured are '
             f'{digits(slowest, 4)} to {digits(fastest, 4)} rev/min'

@@ -8,7 +8,7 @@ friction and onset act through the contacts.
 
 """
 
-from collections.abc import Container, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 import itertools
 import math
@@ -33,14 +33,14 @@ SPARE_POINTS, SPEED_SPAN = 2, 2.0
 LARGEST_TORQUE = 1e3
 """Upper bound of both parasitic parts, that of the datasheet [N m], [N m s/rad]."""
 SEAL_SLIDING = np.geomspace(0.003, 0.5, 16)
-"""Sliding speeds over which the boundary friction of a seal may fade [m/s], at the pitch radius."""
+"""Sliding speeds at the pitch radius over which the friction of a seal may fade [m/s]."""
 FADE_VALUES = 2
 """Sliding speed and power, which are fitted beside the named parameters."""
-FINER = 2.0 ** np.array([0.25, 0.125, 0.0625])
-"""Factors on the sliding speed that fits best, and roots of those on the power [-]."""
+FINER = (1 / 4, 1 / 8, 1 / 16, 1 / 32, 1 / 64)
+"""Octaves by which the sliding speed that fits best is refined, and half of those of the power."""
 SEAL_POWERS = (0.5, 1.0, 2.0)
 """Powers of the speed by which it may fade [-]: Armstrong-Helouvry et al. (1994), table 1."""
-ONSET_SPEEDS, SAME_SPEED = 6, 1.05
+ONSET_SPEEDS, SAME_SPEED = 8, 1.05
 """Speeds from which on an onset is fitted; ratio from which on two of them differ [-]."""
 STEP = 1e-3
 """Step of the differences over a parameter's range [-]."""
@@ -119,17 +119,17 @@ class DragProblem:
         return np.asarray(rise / (up[place] - down[place]))
 
     def with_best_fade(
-        self, start: Array, held: Container[str], sigma: Array
+        self, start: Array, held: Iterable[str], sigma: Array
     ) -> tuple['DragProblem', Array]:
         """
         Return the problem whose seal fades as the points ask for, and what they ask of the rest.
 
-        Of all `SEAL_SLIDING` and `SEAL_POWERS`, by squares over `sigma` [N m] that are least at the
-        onset factor of `start`, the torque being linear in all else that is not `held`.
+        It starts from `SEAL_SLIDING` and `SEAL_POWERS`, by least squares over `sigma` [N m] at the
+        onset factor of `start`; the torque is linear in all else that is not `held`.
 
         """
-        outer = ('onset_factor', 'seal_torque')
-        free = [place for place, name in enumerate(self.names) if name not in (*held, *outer)]
+        outer = {'onset_factor', 'seal_torque'} | set(held)
+        free = [place for place, name in enumerate(self.names) if name not in outer]
         free.append(self.names.index('seal_torque'))
         either, least = np.isinf(self.low[free]), start.copy()
         least[free] = np.where(either, 0.0, self.low[free])
@@ -144,7 +144,7 @@ class DragProblem:
             return norm, power, over, fade, amounts
 
         tried = [faded(*one) for one in itertools.product(SEAL_POWERS, SEAL_SLIDING.tolist())]
-        for step in FINER:
+        for step in 2.0 ** np.array(FINER):
             _, power, over, *_ = min(tried, key=itemgetter(0))
             tried += [faded(power, over * step), faded(power, over / step)]
             _, power, over, *_ = min(tried, key=itemgetter(0))
@@ -260,7 +260,8 @@ def _rows(
 
 
 def _check(problem: DragProblem) -> None:
-    run, wanted = problem.run, len(problem.names) + SPARE_POINTS
+    fade = FADE_VALUES if 'seal_torque' in problem.names else 0
+    run, wanted = problem.run, len(problem.names) + fade + SPARE_POINTS
     speed = np.abs(run.speed) / RPM
     if len(speed) < wanted:
         raise InputError(

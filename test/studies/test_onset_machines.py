@@ -14,21 +14,26 @@ def load_machines(study):
 
 @pytest.fixture(scope='module')
 def rows(machines):
-    return list(machines.rows_of('staircase', machines.SPEEDS, range(6)))
+    return list(machines.rows_of('steady', machines.SPEEDS, range(6)))
 
 
 def test_what_is_stated_of_machines_outside_the_fit_holds(rows):
-    """Six strips, each with a seal, a ripple, noise and an oil that warms up; most are told."""
+    """Six strips, each with a seal, a ripple, noise and an oil that warms up; half are told."""
     assert len({row['march'] for row in rows}) == 6
     closed = [row for row in rows if not row['onset_factor_reason']]
-    assert len(closed) >= 4
+    assert len(closed) >= 3
     held = [
         row['onset_factor_low'] < row['onset_factor'] < row['onset_factor_high'] for row in closed
     ]
     assert sum(held) >= len(held) - 1
+    for row in rows:
+        least = row['onset_factor_reason'].partition('at least ')[2]
+        most = row['onset_factor_reason'].partition('at most ')[2]
+        assert not least or row['onset_factor'] > float(least.split()[0])
+        assert not most or row['onset_factor'] < float(most.split()[0])
     off = [row['onset_factor_found'] / row['onset_factor'] for row in closed]
-    assert max(off) < 2
-    assert min(off) > 0.5
+    assert max(off) < 2.5
+    assert min(off) > 0.4
 
 
 def test_drag_beside_the_contacts_is_two_to_eight_times_theirs(rows, machines):

@@ -169,7 +169,7 @@ def test_an_onset_that_is_refused_leaves_no_sheet(run, tmp_path, capsys, says):
     sheet = tmp_path / 'found.yaml'
     assert run(data, '--onset', '--out', sheet, '--plot', tmp_path) == 1
     printed = capsys.readouterr()
-    assert says('onset_beyond') in printed.out
+    assert says('onset_not_told') in printed.out
     assert str(sheet) not in printed.err
     assert sorted(path.name for path in tmp_path.iterdir()) == ['identify.png', 'stairs.csv']
     assert run(data, '--onset', '--json') == 1
