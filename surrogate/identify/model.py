@@ -27,8 +27,9 @@ ONSET_FRICTIONS = (0.05, 0.16)
 """
 The same where the onset is identified [-]: below, nothing turns the torque up.
 
-0.15 is the coefficient that SKF, Rolling bearings (2016), p. 104, takes for lubricants in general,
-so what asks for a third more is friction of something else.
+SKF takes 0.15 for lubricants in general, by their additives: catalogue Rolling bearings, model of
+the frictional moment, sliding in mixed lubrication. What asks for more than 0.16 is friction of
+something else than the balls.
 
 """
 ONSET_BOUNDS = (0.1, 10.0)

@@ -39,7 +39,7 @@ FADE_VALUES = 2
 FINER = (1 / 4, 1 / 8, 1 / 16, 1 / 32, 1 / 64)
 """Octaves by which the sliding speed that fits best is refined, and half of those of the power."""
 SEAL_POWERS = (0.5, 1.0, 2.0)
-"""Powers of the speed by which it may fade [-]: Armstrong-Helouvry et al. (1994), table 1."""
+"""Powers of the speed by which it may fade [-], from Armstrong-Helouvry et al. (1994)."""
 ONSET_SPEEDS, SAME_SPEED = 8, 1.05
 """Speeds from which on an onset is fitted; ratio from which on two of them differ [-]."""
 STEP = 1e-3
