@@ -37,7 +37,7 @@ SEAL_SLIDING = np.geomspace(0.003, 0.5, 16)
 FADE_VALUES = 2
 """Sliding speed and power, which are fitted beside the named parameters."""
 FINER = (1 / 4, 1 / 8, 1 / 16, 1 / 32, 1 / 64)
-"""Octaves by which the sliding speed that fits best is refined, and half of those of the power."""
+"""Octaves by which the sliding speed that fits best is refined, half as many as the power."""
 SEAL_POWERS = (0.5, 1.0, 2.0)
 """Powers of the speed by which it may fade [-], from Armstrong-Helouvry et al. (1994)."""
 ONSET_SPEEDS, SAME_SPEED = 8, 1.05
