@@ -29,6 +29,8 @@ TOLERANCE = 1e-12
 """Relative change of cost, parameters and gradient at which the fit ends [-]."""
 ROBUST_ROUNDS = 6
 """Fits by soft_l1, each with the spread that the one before left."""
+MODEL_ERROR = 0.005
+"""Root mean square over the mean torque [-] that curves of seals and marches are off anyway."""
 MEDIAN_TO_SPREAD = 1.4826
 """Standard deviation over the median amount of normal residuals [-]."""
 
@@ -135,7 +137,7 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         faded, start = problem.with_best_fade(at(factor), (), sigma)
         values, _ = _fit(faded, start, {'onset_factor': ''}, sigma)
         residual = faded.residual(values) / sigma
-        return float(residual @ residual), faded.misfit(residual)
+        return float(residual @ residual), float(np.fmax(faded.misfit(residual), model_error))
 
     def fitted(start: Array, held: dict[str, str]) -> Identification:
         faded, start = problem.with_best_fade(start, held, sigma)
@@ -154,6 +156,8 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
 
     freedom = len(sigma) - len(problem.names) - FADE_VALUES
     stated = float(problem.start[place])
+    torque = float(np.abs(problem.run.torque).mean())
+    model_error = float(np.mean((MODEL_ERROR * torque / sigma) ** 2))
     scan = scan_onset(cost, freedom, problem.contacts.screw.roughness.lay)
     identified = along(scan)
     slowest = int(np.abs(problem.run.speed).argmin())

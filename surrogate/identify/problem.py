@@ -158,7 +158,7 @@ class DragProblem:
         Return the mean square of what the points of one speed have in common [-].
 
         Of a `residual` over the standard deviation [-]; both directions of one speed repeat an
-        error of the model, and not the noise. NaN for too few speeds.
+        error of the model, and not the noise.
 
         """
         order = np.argsort(np.abs(self.run.speed))
