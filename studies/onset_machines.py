@@ -13,7 +13,7 @@ oil that warms up unseen. Prints how often the factor lies within 1.3 and interv
 the truth, and writes `onset_machines.csv`. The same for staircases that end above the upturn of
 most machines (`fast`), for machines that touch late, so that their seals alone turn the torque up
 over most speeds (`late`), and for a ripple of 0.3 % (`steady`); `--late N` and so on draw another
-number. Some minutes. Such machines test the estimator alone, not the law. `--write` writes the run
+number, `--first SEED` others. Some minutes. Such machines test the estimator alone, not the law. `--write` writes the run
 of one machine to `staircase.csv` instead.
 
 """
@@ -225,6 +225,7 @@ def main():
     parser.add_argument('--fast', type=int, default=40)
     parser.add_argument('--late', type=int, default=80)
     parser.add_argument('--steady', type=int, default=60)
+    parser.add_argument('--first', type=int, default=0, help='seed of the first of each')
     parser.add_argument('--out', type=Path, default=Path('studies/results'))
     parser.add_argument('--write', type=int, metavar='SEED')
     args = parser.parse_args()
@@ -238,7 +239,7 @@ def main():
         ('late', SPEEDS, args.late),
         ('steady', SPEEDS, args.steady),
     ):
-        rows = list(rows_of(kind, rpm, range(number)))
+        rows = list(rows_of(kind, rpm, range(args.first, args.first + number)))
         print(kind, end=': ', flush=True)
         report(rows)
         every += rows
