@@ -13,8 +13,8 @@ oil that warms up unseen. Prints how often the factor lies within 1.3 and interv
 the truth, and writes `onset_machines.csv`. The same for staircases that end above the upturn of
 most machines (`fast`), for machines that touch late, so that their seals alone turn the torque up
 over most speeds (`late`), and for a ripple of 0.3 % (`steady`); `--late N` and so on draw another
-number, `--first SEED` others. Some minutes. Such machines test the estimator alone, not the law. `--write` writes the run
-of one machine to `staircase.csv` instead.
+number, `--first SEED` others. Some minutes. Such machines test the estimator alone, not the law.
+`--write` writes the run of one machine to `staircase.csv` instead.
 
 """
 

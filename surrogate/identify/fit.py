@@ -152,7 +152,14 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     def along(scan: OnsetScan) -> Identification:
         if scan.calibrates:
             return fitted(at(scan.best), {})
-        return without_onset(*scan.bound(stated))
+        factor, reason = scan.bound(stated)
+        # Without a calibration no machine is told that it touches later than its datasheet says.
+        return told(without_onset(factor, reason), value=max(factor, stated))
+
+    def told(identified: Identification, **onset: Any) -> Identification:
+        estimates = [*identified.estimates]
+        estimates[place] = replace(estimates[place], **onset)
+        return replace(identified, estimates=tuple(estimates))
 
     freedom = len(sigma) - len(problem.names) - FADE_VALUES
     stated = float(problem.start[place])
@@ -175,10 +182,7 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     onset = identified.estimates[place]
     low, high = scan.interval(onset.value)
     error = onset.value * math.log(high / low) / (2 * student_factor(freedom))
-    onset = replace(onset, low=low, high=high, standard_error=error, reason='')
-    estimates = [*identified.estimates]
-    estimates[place] = onset
-    return replace(identified, estimates=tuple(estimates))
+    return told(identified, low=low, high=high, standard_error=error, reason='')
 
 
 def _fit(

@@ -70,7 +70,7 @@ class OnsetScan:
         return value * math.exp(-below), value * math.exp(above)
 
     def bound(self, stated: float) -> tuple[float, str]:
-        """Return factor [-] and reason where an end is open or the interval is too wide."""
+        """Return the factor nearest to the `stated` one [-] that may be, and why no more is told."""
         wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * self.extrapolation)
         least, most = self.low / wide, self.high * wide
         if self.closed:
@@ -83,8 +83,8 @@ class OnsetScan:
             reason = f'the torque does not rise at high speed: at least {least:.3g} (95 %)'
         elif math.isfinite(self.high):
             reason = (
-                'the torque does not turn up at low speed, or no more than a seal that fades: at '
-                f'most {most:.3g} (95 %)'
+                'the torque turns up at low speed no more than with a seal that fades: at most '
+                f'{most:.3g} (95 %), the factor of the datasheet is kept'
             )
         else:
             reason = 'the torque tells nothing of it: kept as in the datasheet'

@@ -167,14 +167,15 @@ def identified_screw(
     """
     Return the datasheet with what was found, and in its source from where.
 
-    An onset that has an interval is calibrated on the `day`; another one is no calibration.
+    An onset that has an interval is calibrated on the `day`; another one is no calibration, and
+    leaves that of the datasheet unless it moves its factor.
 
     """
     friction, onset = fit.value('asperity_friction'), fit.estimate('onset_factor')
     rough = screw.roughness
     if not math.isnan(friction):
         rough = replace(rough, asperity_friction=friction)
-    if onset is not None:
+    if onset is not None and not (onset.reason and onset.value == rough.onset_factor):
         band = None if onset.reason else calibrated_band(onset.low, onset.high)
         rough = replace(
             rough, onset_factor=onset.value, onset_band=band, calibrated=day if band else None

@@ -32,7 +32,7 @@ def test_curves_bands_and_points_share_the_speed_axis(screw, oil):
     assert upper.get_ylabel().endswith('[mN m]')
 
 
-@pytest.mark.parametrize('reason', ['', 'the torque does not turn up'])
+@pytest.mark.parametrize('reason', ['', 'the torque tells nothing of it'])
 def test_the_onset_is_marked_with_its_interval_or_as_taken(screw, oil, reason):
     """A line over the speeds, and a band only where the data tell one."""
     speed = np.array(SPEEDS) * RPM

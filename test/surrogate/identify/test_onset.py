@@ -147,8 +147,8 @@ def test_a_profile_that_falls_again_allows_what_lies_there():
 @pytest.mark.parametrize(
     ('centre', 'stated', 'kept', 'words'),
     [
-        (ONSET_BOUNDS[0], 1.0, False, 'no more than a seal that fades: at most'),
-        (ONSET_BOUNDS[0], 0.1, True, 'no more than a seal that fades: at most'),
+        (ONSET_BOUNDS[0], 1.0, False, 'no more than with a seal that fades: at most'),
+        (ONSET_BOUNDS[0], 0.1, True, 'no more than with a seal that fades: at most'),
         (ONSET_BOUNDS[1], 1.0, False, 'does not rise at high speed: at least'),
         (ONSET_BOUNDS[1], 10.0, True, 'does not rise at high speed: at least'),
     ],
@@ -227,7 +227,19 @@ def test_without_an_upturn_there_is_a_bound_and_no_calibration(says):
     assert found.value('asperity_friction') == SCREW.roughness.asperity_friction
     sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
     assert sheet.roughness.calibration == ''
-    assert 'does not turn up' in page(identification_record(SCREW, run, contacts, found))
+    assert 'no more than with a seal' in page(identification_record(SCREW, run, contacts, found))
+
+
+def test_a_bound_below_the_datasheet_leaves_its_onset_and_calibration(says):
+    """A factor that is lowered would tell of an oil film where none is known."""
+    run, contacts = staircase(FAST)
+    stated = with_raceway(SCREW, onset_factor=9.0, onset_band=1.5, calibrated='2026-01-02')
+    found = identify(stated, run, formula_model(stated, OIL, run, FITTED), FITTED)
+    onset = found.estimate('onset_factor')
+    assert says('turn_up') in onset.reason
+    assert float(onset.reason.split('at most ')[1].split()[0]) < 9.0
+    sheet = identified_screw(stated, run, contacts, found, '2026-11-24')
+    assert sheet.roughness == stated.roughness
 
 
 @pytest.mark.parametrize('key', DRAG)
