@@ -288,4 +288,4 @@ def _doubts_of_signs(
             data = data or _sampled(axis, table, turns)
             slope = data['speed'] if 'speed' in data else slopes(data['position'])
             if brakes_always(data[kind], slope):
-                yield unclear_brake(axis.name, kind, column.name)
+                yield unclear_brake(axis.name, kind, column.name, column.scale)

@@ -180,13 +180,19 @@ def _ask_for_gear(draft: Draft, name: str) -> None:
         if turns or makes_load or 'load' not in used:
             draft.ask(
                 f'{name}.{kind}.scale',
-                f', what makes {used[kind]["column"]} that of the screw, 1 if it is: '
+                f', what makes {used[kind]["column"]} that of the screw, '
+                f'{used[kind].get("scale") or 1.0:g} if it is: '
                 f'{_statement(draft, "gear")}',
             )
 
 
 def _assume_no_gear(draft: Draft, name: str) -> None:
-    """Assume of what names the motor that the screw turns so, where nothing tells a gear."""
+    """
+    Assume of what names the motor that the screw turns so, where nothing tells a gear.
+
+    The assumed scale is that of the unit, 1 for one of a map.
+
+    """
     used, turning = draft.used[name], _TURNING_UNITS
     motion = [kind for kind in MOTION if kind in used]
     if draft.log.head.factors:
@@ -194,7 +200,8 @@ def _assume_no_gear(draft: Draft, name: str) -> None:
     alone = all(draft.unit(name, kind) in turning for kind in motion)
     for kind in [*(motion if alone else []), *({'torque'} & set(used))]:
         of_motor = OF_THE_MOTOR & set(words_of(used[kind]['column']))
-        if of_motor and 'scale' not in used[kind] and draft.unit(name, kind) != RATED:
-            column = used[kind]['column']
+        is_open = used[kind].get('scale', 1.0) is None
+        if of_motor and not is_open and draft.unit(name, kind) != RATED:
+            column, of_unit = used[kind]['column'], used[kind].pop('scale', 1.0)
             why = f'{column} is of the motor, taken to drive the screw without a gear'
-            draft.assume(f'{name}.{kind}.scale', 1.0, why)
+            draft.assume(f'{name}.{kind}.scale', of_unit, why)

@@ -1058,6 +1058,31 @@ def test_all_that_names_the_motor_is_assumed_to_be_of_the_screw(guessed):
     assert {column.scale for column in make_map(made.content).axes[0].columns.values()} == {1.0}
 
 
+@pytest.mark.parametrize(
+    ('name', 'value', 'unit', 'factor'),
+    [
+        ('X motor torque [Ncm]', 50.0, 'N m', 0.01),
+        ('X motor torque [mNm]', 500.0, 'N m', 1e-3),
+        ('X motor torque [lbf ft]', 0.4, 'N m', 1.3558179483314004),
+        ('X motor speed [deg/s]', 360.0, 'rev/min', 1.0 / 6.0),
+        ('X drive speed [rev/s]', 1.0, 'rev/min', 60.0),
+    ],
+)
+def test_a_unit_that_is_converted_leaves_the_gear_of_the_motor_assumed(
+    name, value, unit, factor, guessed, says
+):
+    kind = 'torque' if 'torque' in name else 'speed'
+    columns = {'t_s': TIME, name: value * np.sin(TIME)}
+    columns |= {'X speed [mm/s]': SPEED} if kind == 'torque' else {'X force [N]': SPEED}
+    made = guessed(columns, form='{:.9g}')
+    assert not made.unstated
+    assumed = made.content['assumed'][f'x.{kind}.scale']
+    assert assumed['value'] == pytest.approx(factor, rel=1e-12)
+    assert assumed['reason'] == says('no_gear', column=name)
+    column = make_map(made.content).axes[0].columns[kind]
+    assert (column.unit, column.scale) == (unit, assumed['value'])
+
+
 def test_an_assumed_gear_leaves_the_sign_of_a_torque_in_doubt(write_csv, refused, tmp_path):
     """A torque against all motion is asked for in a log that is read by the map of another."""
     path, torque = tmp_path / 'log.csv', 'X motor torque [Nm]'
