@@ -116,7 +116,8 @@ def _of_hundredths(name: str, cells: Sequence[str], parts: Sequence[int]) -> Pla
 
 def _of_unit(name: str, unit: str) -> PlainColumn | None:
     """Return a column in a unit of its cells; None for such as its quantity has not."""
-    kind = read_name(name).kind
+    kind = read_name(name if BRACKETS.search(name) else _with_unit(name, unit)).kind
+    kind = kind or read_name(name).kind
     of_name, of_cells = unit_and_scale(name, kind), unit_and_scale(f'[{unit}]', kind)
     if kind and not of_cells[0]:
         return None

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
+from ballscrew_monitor.core.conversions import ROTARY_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import marks
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
@@ -152,6 +153,9 @@ TELLS_NOTHING = (
     | (ENCODERS - ELSEWHERE)
     | {'achs', 'axial', 'axes'}
 )
+ANGLES = frozenset('angle winkel drehwinkel angolo ángulo'.split())
+OF_THE_ANGLE = TELLS_NOTHING | ANGLES | {'motor', 'drive', 'antrieb'}
+"""Words of an axis beside the unit of an angle, which is then its position, be it of the motor."""
 TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 """Words of a speed that tell its unit, where nothing else does."""
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
@@ -357,7 +361,12 @@ def told_by_units(named: Sequence[Named]) -> list[str]:
 def _kind_by_unit(column: str, place: str) -> str:
     """Return the quantity that the unit of a column tells, where no other word may deny it."""
     kind, before = kind_by_unit(column)
-    if kind == 'time':
+    words = words_without_unit(column, 'position')
+    if place == 'axis' and ANGLES & {*words}:
+        is_turned = unit_of(column, 'position') in ROTARY_POSITION_UNITS
+        kind = 'position'
+        told = is_turned and all(len(word) == 1 or word in OF_THE_ANGLE for word in words)
+    elif kind == 'time':
         told = place == 'machine' and unit_of(column, kind) in TIMES_BY_UNIT
     else:
         told = all(len(word) == 1 or word in TELLS_NOTHING for word in words_of(before))

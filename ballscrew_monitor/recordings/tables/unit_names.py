@@ -12,9 +12,9 @@ _SMALL = 'a-zäöüßàéèóíąćęłńśźżčřšžáúůýěµμ°'
 WORD = re.compile(rf'[{_CAPITAL}]+(?![{_SMALL}])|[{_CAPITAL}]?[{_SMALL}]+|\d+')
 """A word of a name: of one case, or of small letters after a capital; or a number."""
 COMPOUND = re.compile(
-    '(ist|soll|motor|achs|axial|vorschub|öl|oel|mutter)?'
-    '(geschwindigkeit|geschw|drehzahl|position|lage|weg|kraft|moment|drehmoment|strom|temperatur'
-    '|temp(?!s$)|zeit)s?(istwert|sollwert|wert)?'
+    '(ist|soll|motor|antrieb|achs|axial|vorschub|öl|oel|mutter)?s?'
+    '(geschwindigkeit|geschw|drehzahl|position|lage|weg|winkel|kraft|moment|drehmoment|strom'
+    '|temperatur|temp(?!s$)|zeit)s?(istwert|sollwert|wert)?'
 )
 """A German word of several, such as Motorstrom."""
 BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
@@ -38,7 +38,7 @@ _ALIASES = {
     'mm/min': ('mmpm',),
     'm/min': ('mpm',),
     'rev/min': (
-        *'rpm 1/min r/min u/min upm umdr/min turns/min min-1 min^-1 min⁻¹'.split(),
+        *'rpm 1/min r/min u/min upm umdr/min tr/min turns/min min-1 min^-1 min⁻¹'.split(),
         'revolution/minute',
     ),
     'rad/s': ('radps', 'rad/sec'),

@@ -388,6 +388,48 @@ def test_the_unit_tells_which_of_several_quantities_a_name_means(names, kinds, t
     assert kinds <= {*guess(path).content['axes']['x']}
 
 
+@pytest.mark.parametrize('name', ['X load', 'X torque', 'X Auslastung'])
+@pytest.mark.parametrize('form', ['{:.1f} %', '{:.1f}%'])
+def test_cells_in_per_cent_are_those_of_the_rated_torque(name, form, tmp_path):
+    """Controls mean by a load in per cent the torque of the motor."""
+    torque = np.round(20.0 * np.sin(math.tau * TIMES), 1)
+    lines = [
+        f'{time:.2f};{speed};{form.format(one)}'
+        for time, speed, one in zip(TIMES, SPEED, torque, strict=True)
+    ]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([f't [s];X speed [mm/s];{name}', *lines, '']))
+    content = guess(log).content
+    axis = content['axes']['x']
+    assert axis['torque'] == {'column': f'{name} [%]', 'unit': '%'}
+    axis['torque_rated_Nm'] = 5.0
+    (rows,) = next(read_series(log, make_map(content)).blocks())
+    np.testing.assert_allclose(rows.columns['x.torque'], 0.05 * torque, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ('name', 'in_turn'),
+    [
+        ('X angle [deg]', 360.0),
+        ('Winkel X [Grad]', 360.0),
+        ('X angle [rad]', math.tau),
+        ('X_motor_angle_deg', 360.0),
+        ('Motorwinkel X [°]', 360.0),
+    ],
+)
+def test_an_angle_of_an_axis_is_its_position(name, in_turn, tmp_path):
+    """A screw that turns to and fro five times, whose speed is the slope of its angle."""
+    turns = 5.0 * (1.0 - np.cos(math.tau * TIMES / 2.4))
+    lines = [f'{t:.2f};{in_turn * one:.9f}' for t, one in zip(TIMES, turns, strict=True)]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([f't [s];{name}', *lines, '']), encoding='utf-8')
+    content = guess(log).content
+    assert content['axes']['x']['position']['column'] == name
+    (rows,) = next(read_series(log, make_map(content)).blocks())
+    speed = 5.0 * math.tau / 2.4 * math.tau * np.sin(math.tau * TIMES / 2.4)  # [rad/s]
+    np.testing.assert_allclose(rows.columns['x.speed'][5:-5], speed[5:-5], atol=0.5)
+
+
 def test_numbers_of_rows_behind_all_columns_are_no_times(tmp_path):
     path = tmp_path / 'log.csv'
     lines = table().splitlines()
