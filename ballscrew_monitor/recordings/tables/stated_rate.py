@@ -97,21 +97,33 @@ def _counts_samples(values: Array) -> bool:
 
 
 def _jump(source: Source, counter: str) -> tuple[int, float, float] | None:
-    """Return the first row in which a counter is not the next number, with that before and it."""
-    row, last = source.head.first, math.nan
+    """
+    Return the first row in which a counter is not the next number, with that before and it.
+
+    A counter goes on that begins again at its least number behind its largest one, if these are
+    of a power of two or if it does so several times.
+
+    """
+    row, last, least, most = source.head.first, math.nan, math.inf, -math.inf
+    jumps: dict[tuple[float, float], list[int]] = {}
     for block in source.blocks([counter]):
         if block[counter].dtype.is_temporal():
             return None  # times of whole seconds
         cells = block[counter].cast(pl.Float64, strict=False).to_numpy()
         places = np.flatnonzero(np.isfinite(cells))
         values = np.append(last, cells[places])
-        jumps = np.flatnonzero(np.diff(values) != 1.0)
-        jumps = jumps[np.isfinite(values[jumps])]
-        if len(jumps):
-            at = int(jumps[0])
-            return row + int(places[at]), float(values[at]), float(values[at + 1])
+        least = float(np.nanmin(values, initial=least))
+        most = float(np.nanmax(values, initial=most))
+        for at in np.flatnonzero(np.abs(np.diff(values) - 1.0) > 0.0):
+            pair = float(values[at]), float(values[at + 1])
+            jumps.setdefault(pair, []).append(row + int(places[at]))
+        if len(jumps) > 1:
+            break
         row, last = row + len(cells), float(values[-1])
-    return None
+    rows = jumps.get((most, least), [])
+    if len(rows) > 1 or (rows and math.log2(most - least + 1.0).is_integer()):
+        del jumps[most, least]
+    return next(((rows[0], *pair) for pair, rows in jumps.items()), None)
 
 
 def _of_twins(mapping: TableMap, source: Source) -> Iterator[str]:

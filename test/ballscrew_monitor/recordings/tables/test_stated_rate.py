@@ -42,7 +42,7 @@ def by_rate(place, **time):
 @pytest.mark.parametrize('overrun', [False, True])
 def test_samples_that_a_counter_shows_to_be_lost_are_not_closed_up(overrun, tmp_path, refused):
     path = sampler(tmp_path / 'log.txt', numbers=True, lost=50, overrun=overrun)
-    with refused('lost', row=152 if overrun else 151):
+    with refused('lost', before='149', after='200', row=152 if overrun else 151):
         read_series(path, by_rate(2))
     series = read_series(path, by_rate(2, column='column 1', unit='s', scale=1.0 / RATE))
     (rows,) = next(series.blocks())
@@ -51,6 +51,49 @@ def test_samples_that_a_counter_shows_to_be_lost_are_not_closed_up(overrun, tmp_
     np.testing.assert_allclose(
         rows.columns['x.speed'], np.interp(times, TIME, SPEED) * math.tau / 10.0, atol=1e-4
     )
+
+
+def counted(path, numbers):
+    """Write speeds at 100 Hz behind the numbers of their samples."""
+    lines = [
+        f'{number} {90.0 * math.sin(math.tau * at / 400.0):.6f}'
+        for at, number in enumerate(numbers)
+    ]
+    path.write_text('\n'.join([*lines, '']))
+    return path
+
+
+@pytest.mark.parametrize(
+    ('least', 'largest', 'begin'),
+    [(0, 255, 0), (0, 255, 250), (0, 65535, 65136), (-128, 127, 0), (1, 100, 1), (0, 999, 0)],
+)
+def test_a_counter_of_samples_that_begins_again_closes_up_nothing(least, largest, begin, tmp_path):
+    """At a power of two, or several times at the same number."""
+    size = largest - least + 1
+    numbers = [least + (begin - least + at) % size for at in range(2500)]
+    assert read_series(counted(tmp_path / 'log.txt', numbers), by_rate(2)).count == 2500
+
+
+@pytest.mark.parametrize(
+    ('largest', 'lost', 'before', 'after'),
+    [
+        (255, slice(300, 340), 43, 84),
+        (255, slice(500, 520), 243, 8),
+        (255, slice(511, 512), 254, 0),
+        (899, slice(0, 0), 899, 0),
+        (2**20, slice(700, 800), 699, 800),
+    ],
+)
+def test_a_counter_that_begins_again_still_shows_what_is_lost(
+    largest, lost, before, after, tmp_path, refused
+):
+    """So does one that does so once, at no power of two, as it does where a run begins."""
+    numbers = [at % (largest + 1) for at in range(1600)]
+    del numbers[lost]
+    path = counted(tmp_path / 'log.txt', numbers)
+    row = (lost.start or largest + 1) + 1
+    with refused('lost', before=before, after=after, row=row):
+        read_series(path, by_rate(2))
 
 
 def test_a_line_of_lost_samples_without_a_counter_is_no_sample(tmp_path, refused):
