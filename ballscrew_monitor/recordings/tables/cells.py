@@ -8,7 +8,7 @@ point, numbers with a decimal comma, or times of one of the forms of `clocks`.
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import datetime as dt
@@ -43,8 +43,8 @@ class Reading:
     How the cells of a column are numbers, the least and the most of them, and what is not.
 
     Empty cells are no samples: `holes` are their number and a checksum of their rows. What else is
-    no number is unknown, and the note counts it. Texts that are all plain numbers have a type, by
-    which they are read at once, `plain`.
+    no number is unknown, and the note counts it, as are the numbers that stand for `none`. Texts
+    that are all plain numbers have a type, by which they are read at once, `plain`.
 
     """
 
@@ -53,6 +53,7 @@ class Reading:
     holes: tuple[int, int]
     note: str
     plain: Any = None
+    none: Sequence[float] = ()
 
     @property
     def is_time(self) -> bool:
@@ -66,7 +67,7 @@ class Reading:
 
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is not a number."""
-        return _finite(_plain if cells.dtype.is_numeric() else self.form, cells)
+        return _finite(_plain if cells.dtype.is_numeric() else self.form, cells, self.none)
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -74,6 +75,7 @@ class _Count:
     """What a form has made of the cells so far."""
 
     form: Form
+    none: Sequence[float] = ()
     good: int = 0
     bad: int = 0
     first: str = ''  # of those that are no number, and its row
@@ -82,7 +84,7 @@ class _Count:
 
     def add(self, cells: pl.Series, row: int) -> bool:
         """Count cells from `row` on; return True if all that is written is a number."""
-        return self.take(_finite(self.form, cells), cells, row)
+        return self.take(_finite(self.form, cells, self.none), cells, row)
 
     def take(self, numbers: Array, cells: pl.Series, row: int) -> bool:
         """Count the numbers that the form makes of cells from `row` on, as `add` does."""
@@ -115,17 +117,25 @@ class _Count:
 class Cells:
     """The cells of one column, looked through in the order of their rows."""
 
-    def __init__(self, path: Path, name: str, *, first_row: int = 1, order: str = '') -> None:
+    def __init__(
+        self,
+        path: Path,
+        name: str,
+        *,
+        first_row: int = 1,
+        order: str = '',
+        none: Sequence[float] = (),
+    ) -> None:
         """
         Begin with the column `name` of the log at `path`.
 
         The first of its cells stands in the row `first_row` of the file; `order` is that of day
-        and month, where it is known.
+        and month, where it is known; the numbers `none` stand for no value.
 
         """
         self.where = f'log {path}: column {short(repr(name))}'
         self._row = self._first_row = first_row
-        self._order = order
+        self._order, self._none = order, none
         self._first: Any = None
         self.signs = signs.Signs()
         self._type: pl.DataType = pl.Null()
@@ -139,7 +149,10 @@ class Cells:
             self._first, self._type = cells[0], cells.dtype
         with readable(f'{self.where} of {self._type} cannot be read as numbers'):
             if not self._kinds:
-                self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
+                self._kinds = [
+                    [_Count(form=form, none=self._none) for form in kind]
+                    for kind in self._forms(cells)
+                ]
             if cells.dtype == self._type:
                 self._count(cells)
                 first = cells.head(SAMPLE)
@@ -155,7 +168,7 @@ class Cells:
     def _count_typed(self, cells: pl.Series) -> None:
         """Count cells that were read by the type that is `plain`."""
         points, commas = self._kinds[0]
-        numbers = _finite(_plain, cells)
+        numbers = _finite(_plain, cells, self._none)
         points.take(numbers, cells, self._row)
         if cells.dtype == pl.Float64:
             commas.pass_over(cells, self._row, filled=True)
@@ -198,6 +211,7 @@ class Cells:
             holes=self._holes,
             note=note if chosen.bad else '',
             plain=self.plain,
+            none=self._none,
         )
 
     @property
@@ -277,7 +291,7 @@ class Cells:
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
-        numbers = _finite(_points, cells)
+        numbers = _finite(_points, cells, self._none)
         pointed = _holds(cells, '.') if not self.signs.shows('.') else np.ones(len(cells), bool)
         if np.isfinite(numbers).all():  # none of them holds a comma
             read = points.take(numbers, cells, self._row)
@@ -322,10 +336,12 @@ class Cells:
         return max(counts, key=lambda one: one.good)
 
 
-def _finite(form: Form, cells: pl.Series) -> Array:
-    """Return cells as numbers, NaN where a form makes none or no finite one of them."""
+def _finite(form: Form, cells: pl.Series, none: Sequence[float] = ()) -> Array:
+    """Return cells as numbers, NaN where a form makes none of them, or one that is not known."""
     numbers = form(cells).to_numpy()  # NaN for null
     known = np.isfinite(numbers)
+    if none:
+        known &= ~np.isin(numbers, none)
     return numbers if known.all() else np.where(known, numbers, math.nan)
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Cells of columns by their marks: nan where none or not valid, with a minus if backward."""
+"""Cells of columns by their marks: nan where not valid, with a minus if backward."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -37,22 +37,12 @@ def _marked(block: pl.DataFrame, name: str, marks: Marks) -> pl.Series:
         else:
             minus = -cells.abs()
         cells = minus.zip_with(back, cells)
-    valid = ~_stands_for_none(block[name], marks.none) if marks.none else None
     if marks.valid:
-        of_quality = _holds(block, marks.valid)
-        valid = of_quality if valid is None else valid & of_quality
-    if valid is not None:
+        valid = _holds(block, marks.valid)
         unknown = 'nan' if cells.dtype == pl.String else float('nan')
         cells = cells if cells.dtype == pl.String else cells.cast(pl.Float64)
         cells = cells.zip_with(valid | empty, pl.Series([unknown], dtype=cells.dtype))
     return cells.alias(name)
-
-
-def _stands_for_none(cells: pl.Series, numbers: Sequence[float]) -> pl.Series:
-    """Return in which rows a cell is one of the numbers that stand for no value."""
-    if cells.dtype == pl.String:
-        cells = with_plain_sign(cells).str.replace(',', '.', literal=True)
-    return cells.cast(pl.Float64, strict=False).is_in([*numbers]).fill_null(False)
 
 
 def _holds(block: pl.DataFrame, mark: Mark) -> pl.Series:

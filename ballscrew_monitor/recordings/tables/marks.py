@@ -93,6 +93,12 @@ class Marks:
     none: tuple[float, ...] | None = None
 
     @property
+    def numbers_of_none(self) -> tuple[float, ...]:
+        """Return the numbers that stand for no value, of either sign where a mark gives one."""
+        none = self.none or ()
+        return (*none, *(-one for one in none)) if self.backward else none
+
+    @property
     def held(self) -> list[Mark]:
         """Return those that are other columns."""
         return [one for one in (self.valid, self.backward) if one]

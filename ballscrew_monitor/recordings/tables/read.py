@@ -169,7 +169,14 @@ def look_through(
     """Look through columns that a table holds, as `open_table` does, but keep the doubts."""
     left_out: dict[str, str] = {}
     found = {
-        name: Cells(source.path, name, first_row=source.head.first, order=order) for name in names
+        name: Cells(
+            source.path,
+            name,
+            first_row=source.head.first,
+            order=order,
+            none=source.none.get(name, ()),
+        )
+        for name in names
     }
     rows, types, sample = 0, dict[str, Any](), Sample()
     with shown(source.rows, 'rows looked through') as show:

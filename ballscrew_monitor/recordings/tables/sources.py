@@ -120,8 +120,9 @@ class Source:
     is one `sheet`, whose days may count `from_1904`. `left_out` says why other sheets or arrays
     are not read, `more_rows` of which are of the same columns, `lengths` how many cells columns of
     groups hold, `arrays` how many those whose rows nothing but a time ties to others; `notes` say
-    what is odd about it. Names of a source that `is_grouped` begin with that of a group. `short`
-    are the rows of too few cells since it began.
+    what is odd about it. Names of a source that `is_grouped` begin with that of a group. `none`
+    are the numbers of columns that stand for no value, `short` the rows of too few cells since it
+    began.
 
     """
 
@@ -138,6 +139,7 @@ class Source:
     arrays: Mapping[str, int | None] = dataclasses.field(default_factory=dict)
     notes: tuple[str, ...] = ()
     is_grouped: bool = False
+    none: Mapping[str, Sequence[float]] = dataclasses.field(default_factory=dict)
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
     def names(self) -> list[str]:
@@ -146,7 +148,9 @@ class Source:
 
     def marked(self, marks: Mapping[str, Marks]) -> 'Source':
         """Return it with the columns that are marked read by their marks."""
-        return dataclasses.replace(self, read=marked(self.read, marks)) if marks else self
+        none = {name: one.numbers_of_none for name, one in marks.items()}
+        read = marked(self.read, marks) if marks else self.read
+        return dataclasses.replace(self, read=read, none={**self.none, **none})
 
     def plain(self, cells: Mapping[str, Sequence[str]]) -> 'Source':
         """Return it with plain cells where some cells of a column show that they are none."""

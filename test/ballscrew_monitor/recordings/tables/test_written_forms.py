@@ -430,6 +430,61 @@ def test_an_angle_of_an_axis_is_its_position(name, in_turn, tmp_path):
     np.testing.assert_allclose(rows.columns['x.speed'][5:-5], speed[5:-5], atol=0.5)
 
 
+GROUPED = {
+    'Swiss': (';', lambda one: f'{one:,.1f}'.replace(',', "'")),
+    'German': (';', lambda one: f'{one:,.1f}'.translate(str.maketrans('.,', ',.'))),
+    'German blank': (';', lambda one: f'{one:,.1f}'.translate(str.maketrans('.,', ', '))),
+    'quoted': (',', lambda one: f'"{one:,.1f}"'),
+    'minus behind': (';', lambda one: f'{abs(one):.1f}-' if one < 0.0 else f'{one:.1f}'),
+}
+
+
+@pytest.mark.parametrize('place', [1, 2])
+@pytest.mark.parametrize('way', GROUPED)
+def test_a_number_for_no_value_is_one_however_its_thousands_are_parted(way, place, tmp_path):
+    sign, write = GROUPED[way]
+    columns = [TIMES, SPEED, np.where(SPEED >= 0.0, 1200.0, -700.0)]
+    columns[place] = np.where((TIMES > 0.5) & (TIMES < 0.6), -9999.0, columns[place])
+    names = ['t [s]', 'x speed [mm/s]', 'x force [N]']
+    times = [write(1e3 * one) for one in TIMES]
+    lines = [
+        sign.join([time, *map(write, row)])
+        for time, row in zip(times, zip(*columns[1:], strict=True), strict=True)
+    ]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([sign.join(names).replace('[s]', '[ms]'), *lines, '']))
+    content = guess(log).content
+    kind = ('speed', 'load')[place - 1]
+    assert content['axes']['x'][kind]['none'] is None
+    content['axes']['x'][kind]['none'] = [-9999.0]
+    (rows,) = next(read_series(log, make_map(content)).blocks())
+    known = rows.columns[f'x.{kind}']
+    factor = math.tau / 10.0 if kind == 'speed' else 1.0
+    lost = columns[place] == -9999.0
+    np.testing.assert_array_equal(np.isnan(known), lost)
+    np.testing.assert_allclose(known[~lost], factor * columns[place][~lost])
+
+
+def test_a_number_for_no_value_is_none_of_a_speed_that_goes_backward(tmp_path):
+    """The sign that a direction gives makes no value of it."""
+    back, lost = SPEED < 0.0, (TIMES > 0.6) & (TIMES < 0.7)
+    amounts = np.where(lost, 9999.0, np.abs(SPEED))
+    lines = [
+        f'{time:.2f};{amount};{"reverse" if one else "forward"}'
+        for time, amount, one in zip(TIMES, amounts, back, strict=True)
+    ]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join(['t [s];x speed [mm/s];direction', *lines, '']))
+    content = guess(log).content
+    speed = content['axes']['x']['speed']
+    assert speed['backward'] == {'column': 'direction', 'cells': ['reverse']}
+    speed['none'] = [9999]
+    (rows,) = next(read_series(log, make_map(content)).blocks())
+    known = rows.columns['x.speed']
+    np.testing.assert_array_equal(np.isnan(known), lost)
+    np.testing.assert_allclose(known[~lost], math.tau / 10.0 * SPEED[~lost], atol=1e-9)
+
+
 def test_numbers_of_rows_behind_all_columns_are_no_times(tmp_path):
     path = tmp_path / 'log.csv'
     lines = table().splitlines()
