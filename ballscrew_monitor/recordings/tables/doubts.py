@@ -9,7 +9,6 @@ A first map asks by the same sentences for which a log is refused whose map leav
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 import dataclasses
-import math
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.amounts import (
@@ -21,7 +20,7 @@ from ballscrew_monitor.recordings.tables.amounts import (
     stays_in_gaps,
 )
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.estimates import mark_of_none, Turns
+from ballscrew_monitor.recordings.tables.estimates import marks_of_none, Turns
 from ballscrew_monitor.recordings.tables.interleaved import cells_of_sources, of_several
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
 from ballscrew_monitor.recordings.tables.names import axis_of_all, LINEAR, read_name
@@ -100,15 +99,25 @@ def unclear_gaps(axis: str, kind: str, column: str) -> str:
     )
 
 
-def unclear_none(axis: str, kind: str, column: str, values: Array) -> str:
-    """Return what decides whether a number stands for no value, empty if none may."""
-    mark = mark_of_none(values)
-    if math.isnan(mark):
+def unclear_none(
+    axis: str, kind: str, column: str, values: Array, stated: Sequence[float] = ()
+) -> str:
+    """Return what decides whether numbers stand for no value beside stated ones, if any may."""
+    marks = marks_of_none(values)
+    if not marks:
         return ''
-    rows = counted(int(np.count_nonzero(values == mark)), 'row')
+    told, every, known = (
+        [f'{one:.12g}' for one in some] for some in (marks, sorted({*stated, *marks}), stated)
+    )
+    stand, if_not, them = ('stand', 'they are values', 'them')
+    if len(marks) == 1:
+        stand, if_not, them = ('stands', 'it is one', 'it')
+    rows = [counted(int(np.count_nonzero(values == one)), 'row') for one in marks]
+    emptied = f' and leave the cells of {" and ".join(known)} empty' if stated else ''
     return (
-        f'state axes.{axis}.{kind}.none in the map, [{mark:g}] if {mark:g} stands for no value, '
-        f'[] if it is one: {short(column)} holds it in {rows}, far beyond all others'
+        f'state axes.{axis}.{kind}.none in the map, [{", ".join(every)}] if {" and ".join(told)} '
+        f'{stand} for no value, []{emptied} if {if_not}: {short(column)} holds {them} in '
+        f'{" and ".join(rows)}, far beyond all others'
     )
 
 
@@ -192,8 +201,10 @@ def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
         yield unclear_factors(factors)
     for axis in mapping.axes:
         for kind, column in axis.columns.items():
-            if column.name in table.readings and column.marks.none is None:
-                if why := unclear_none(axis.name, kind, column.name, table.sampled(column.name)):
+            stated = column.marks.none
+            if column.name in table.readings and stated != ():
+                values = table.sampled(column.name)
+                if why := unclear_none(axis.name, kind, column.name, values, stated or ()):
                     yield why
         position = axis.columns.get('position')
         if position is None or position.name not in table.readings:

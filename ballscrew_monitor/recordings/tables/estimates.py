@@ -36,16 +36,26 @@ LARGE, LEAP = 100.0, 10.0  # of such an amount near others, and of its steps tim
 HELD, FAR, MOST_HELD = 3, 3.0, 0.2  # rows of such an amount, times all others, part of all rows
 
 
-def mark_of_none(values: Array) -> float:
-    """Return the value by which rows are marked that hold none: full, and far from all; or NaN."""
-    known = values[np.isfinite(values)]
-    for value in (known.min(), known.max()) if len(known) else ():
-        others = np.abs(known[known != value])
-        count = len(known) - len(others)
-        if round(abs(float(value)), 9) in FULL and HELD <= count <= MOST_HELD * len(known):
-            if np.all(others < abs(value) / FAR) or _leaps(known, float(value)):
-                return float(value)
-    return math.nan
+def marks_of_none(values: Array) -> tuple[float, ...]:
+    """Return the values by which rows are marked that hold none: full, and far from all others."""
+    left = known = values[np.isfinite(values)]
+    full: set[float] = set()
+    while len(left) and (
+        outer := {
+            value
+            for value in (float(left.min()), float(left.max()))
+            if round(abs(value), 9) in FULL
+            and HELD <= np.count_nonzero(left == value) <= MOST_HELD * len(known)
+        }
+    ):
+        full |= outer
+        left = left[~np.isin(left, [*outer])]
+    return tuple(
+        value
+        for value in sorted(full)
+        if np.all(np.abs(left) < abs(value) / FAR)
+        or _leaps(known[~np.isin(known, [*(full - {value})])], value)
+    )
 
 
 def usual_step(times: Array) -> float:

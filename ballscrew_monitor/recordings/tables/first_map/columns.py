@@ -51,7 +51,7 @@ class Columns:
     that may be; `joints` are named by the cells of others. `marks` says what a map says of the
     marks of each input, `mark_cells` the cells of these. `data` are the first rows, `sampled` rows
     that span the log, since signs may be seen late, and `extremes` the least and the most. `none`
-    are the numbers of inputs of which one may stand for no value, `twins` columns of one name that
+    are the numbers of inputs that may stand for no value, `twins` columns of one name that
     rise evenly. `not_times` says why columns are no time, `lost` which of an axis hold no number;
     `doubts` are the decimal sign or the `order` of dates that the log does not show, `unclear`
     says so.
@@ -233,12 +233,11 @@ class Columns:
         self.none = {
             one.column: self.data[one.column]
             for one in self.inputs
-            if one.column in self.data
-            and math.isfinite(estimates.mark_of_none(self.data[one.column]))
+            if one.column in self.data and estimates.marks_of_none(self.data[one.column])
         }
         if self.none:
             without = {
-                name: Marks(none=(estimates.mark_of_none(values),))
+                name: Marks(none=estimates.marks_of_none(values))
                 for name, values in self.none.items()
             }
             self.source = self.source.marked(without)

@@ -1002,6 +1002,40 @@ def test_a_number_that_may_stand_for_no_value_is_asked_for(
     refused('none_is_a_list', make_map, made.content)
 
 
+@pytest.mark.parametrize(
+    ('marks', 'stated'),
+    [
+        ((-9999.0, 9999.0), (-9999.0,)),
+        ((-9999.0, 9999.0), (9999.0,)),
+        ((-32768.0, -9999.0), (-32768.0,)),
+        ((-9999.0, 999.9, 32767.0), (999.9, 32767.0)),
+    ],
+)
+def test_each_number_that_may_stand_for_no_value_is_asked_for_until_it_is_stated(
+    marks, stated, tmp_path, write_csv, says, refused
+):
+    time = np.arange(400) / 50.0
+    columns = {'t_s': time, 'x_velocity_mm_s': 100.0 * np.sin(time)}
+    columns['x_force_N'] = 150.0 * np.cos(time)
+    for at, mark in enumerate(marks):
+        columns['x_force_N'][slice(50 + 60 * at, 54 + 60 * at)] = mark
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.7g}')
+    made = guess(log)
+    every, left = ([f'{one:g}' for one in some] for some in (marks, {*marks} - {*stated}))
+    words = {'every': ', '.join(every), 'told': ' and '.join(every)}
+    rows = ' and '.join(['4 rows'] * len(marks))
+    assert says('marks_of_none', **words, rows=rows) in made.unstated
+    load = made.content['axes']['x']['load']
+    load['none'] = [*stated]
+    words['known'] = ' and '.join(f'{one:g}' for one in stated)
+    with refused('another_mark_of_none', every=words['every'], mark=left[0], known=words['known']):
+        read_series(log, make_map(made.content))
+    for none, unknown in (([*marks], 4 * len(marks)), ([], 0)):
+        load['none'] = none
+        (block,) = next(read_series(log, make_map(made.content)).blocks())
+        assert np.count_nonzero(np.isnan(block.columns['x.load'])) == unknown
+
+
 @pytest.mark.parametrize('mark', [999.9, 655.35, 327.67])
 @pytest.mark.parametrize('slow', [True, False])
 def test_a_full_number_near_others_is_a_mark_where_it_is_reached_in_a_leap(
