@@ -28,7 +28,7 @@ from ballscrew_monitor.recordings.tables.other_tables import (
     TAIL,
     TAKE_OUT,
 )
-from ballscrew_monitor.recordings.tables.quantities import MOTION, SCALES
+from ballscrew_monitor.recordings.tables.quantities import MOTION, SCALES, SINCE_1904
 from ballscrew_monitor.recordings.tables.stated_rate import first_numbers
 from ballscrew_monitor.recordings.tables.time_gate import OF_A_CLOCK, RATE, TimeGate
 from ballscrew_monitor.recordings.tables.unit_names import unit_of, words_of
@@ -206,6 +206,9 @@ class TimeColumn:
             )
         if why:
             self._draft.assume('time.unit', unit, f'{one.column} states none that is known; {why}')
+        if unit == 'spreadsheet_days' and not self._log.source.sheet:
+            told = f'{one.column} holds days of a spreadsheet, taken to count from 1900'
+            self._draft.assume('time.offset', 0.0, f'{told}; {SINCE_1904} if from 1904')
         if not unit or not estimates.is_universal(known, unit):
             of_day = one.column in self._log.timed
             self._set_epoch(

@@ -400,6 +400,21 @@ def test_days_are_those_of_their_epoch(name, zero, unit, guessed):
     assert made.content['time'] == {'column': name, 'unit': unit}
 
 
+def test_days_of_a_text_are_said_to_count_from_1900_and_a_map_lets_them_from_1904(
+    tmp_path, write_csv, says
+):
+    begin = dt.datetime(2025, 7, 14, 12)
+    since_1904 = (begin - dt.datetime(1904, 1, 1)) / dt.timedelta(days=1)
+    columns = {'Time': since_1904 + np.arange(60) / 86400.0, 'v_x [mm/s]': SPEED[:60]}
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.12g}')
+    content = guess(log).content
+    assert content['assumed']['time.offset'] == {'value': 0.0, 'reason': says('from_1900')}
+    assert not read_series(log, make_map(content)).notes
+    content['assumed']['time.offset']['value'] = 1462
+    stamp = read_series(log, make_map(content)).begin / 1e9
+    assert abs(stamp - begin.replace(tzinfo=dt.UTC).timestamp()) < 1e-2
+
+
 def test_seconds_of_a_day_are_no_days(guessed):
     seconds = 45852.0 + 1e-3 * np.arange(len(TIME))
     made = guessed({'time': seconds, 'v_x [mm/s]': SPEED}, form='{:.12g}')
