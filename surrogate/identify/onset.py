@@ -70,7 +70,7 @@ class OnsetScan:
         return value * math.exp(-below), value * math.exp(above)
 
     def bound(self, stated: float) -> tuple[float, str]:
-        """Return the factor nearest to the `stated` one [-] that may be, and why no more is told."""
+        """Return the factor nearest to the `stated` one [-] that may be, and the reason."""
         wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * self.extrapolation)
         least, most = self.low / wide, self.high * wide
         if self.closed:
