@@ -11,6 +11,7 @@ table. What none of them is stays as it is.
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 import contextlib
+import itertools
 import json
 import math
 from pathlib import Path
@@ -49,6 +50,9 @@ OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 OF_LISTS = 'its cells are lists'
 CYCLE, COUNTERS = 'CycleTimeMs', ('CYCLE', 'HFProbeCounter')
 """Key of the time of a cycle, and signals that count cycles."""
+STAMP = 'HFTimestamp'
+"""Key of the count of the cycle of the row behind it."""
+HALF = 0.5  # row that a count may be off
 Content = Any
 
 
@@ -121,7 +125,16 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
         raise Unreadable(f'a row of HFData holds other than {len(names)} cells, one a signal')
     columns = list(zip(*rows, strict=True))
     held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
-    _check_cycles([str(signal['Name']) for signal in listed], columns)
+    for signal, column in zip(listed, columns, strict=True):
+        if signal['Name'] in COUNTERS:
+            _check_cycles(signal['Name'], column, range(len(rows)))
+    begins = itertools.accumulate((len(part.get('HFData', ())) for part in parts), initial=0)
+    stamps = {
+        begin: part[STAMP].get(COUNTERS[1])
+        for begin, part in zip(begins, parts)
+        if isinstance(part.get(STAMP), dict)
+    }
+    _check_cycles(STAMP, [*stamps.values()], [*stamps])
     begin, cycle = header.get('Initial'), header.get(CYCLE) or math.nan
     if not isinstance(cycle, int | float):
         raise Unreadable('CycleTimeMs of its Header is no number')
@@ -130,19 +143,19 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     return signals_of(held, header, periods, start=start, program=RECORDER)
 
 
-def _check_cycles(names: Sequence[str], columns: Sequence[Sequence[Any]]) -> None:
-    """Raise Unreadable if a counter of cycles among some signals leaves cycles out."""
-    for name in (one for one in names if one in COUNTERS):
-        counts = pl.Series(columns[names.index(name)], dtype=pl.Float64, strict=False)
-        steps = np.diff(np.array(counts))
-        usual = np.median(steps) if steps.size else math.nan
-        if usual > 0.0 and (steps > usual).any():
-            row = int((steps > usual).argmax())
-            raise Unreadable(
-                f'{name} goes on by {steps[row]:g} behind row {row + 1} of its HFData, by '
-                f'{usual:g} from row to row before: rows lack there, save what is before and '
-                'behind as files of their own'
-            )
+def _check_cycles(name: str, counts: Sequence[Any], places: Sequence[int]) -> None:
+    """Raise Unreadable if counts of cycles, each of a row by its place, leave cycles out."""
+    counted = pl.Series(counts, dtype=pl.Float64, strict=False)
+    steps, rows = np.diff(np.array(counted)), np.diff(places)
+    usual = np.median(steps / rows) if steps.size else math.nan
+    lost = steps > usual * (rows + HALF)
+    if usual > 0.0 and lost.any():
+        at = int(lost.argmax())
+        raise Unreadable(
+            f'{name} goes on by {steps[at]:g} from row {places[at] + 1} to row '
+            f'{places[at + 1] + 1} of its HFData, usually by {usual * rows[at]:g}: rows lack '
+            'there, save what is before and behind as files of their own'
+        )
 
 
 def _parsed(text: bytes) -> Content:

@@ -3,6 +3,7 @@
 """Files that are no rows of cells: the signals of controls and measuring systems."""
 
 import dataclasses
+import itertools
 import json
 import math
 import sys
@@ -61,6 +62,24 @@ def test_cycles_that_a_data_recorder_lost_are_refused(counter, tmp_path, refused
         for row in part.get('HFData', ()):
             row[0] += 40 * (row[0] >= 200)
     path.write_text(json.dumps(content))
+    refused('lost_cycles', guess, path)
+
+
+def test_stamps_between_parts_of_a_data_recorder_tell_lost_cycles(tmp_path, refused):
+    """Parts of 10 to 70 rows; the stamps of all from row 200 on count 40 cycles more."""
+    path = tmp_path / 'log.json'
+    sinumerik_json(path)
+    content = json.loads(path.read_text())
+    rows = [row[1:] for part in content['Payload'] for row in part.get('HFData', ())]
+    content['Header']['SignalListHFData'].pop(0)
+    for lost in (0, 40):
+        content['Payload'] = []
+        for begin, end in itertools.pairwise([0, 60, 130, 200, 210, 270, 330, COUNT]):
+            stamp = {'HFProbeCounter': str(7000 + begin + lost * (begin >= 200))}
+            content['Payload'] += [{'HFTimestamp': stamp}, {'HFData': rows[begin:end]}]
+        path.write_text(json.dumps(content))
+        if not lost:
+            assert guess(path).content['time'] == {'rate_Hz': 500.0}
     refused('lost_cycles', guess, path)
 
 
