@@ -33,7 +33,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     unit_of_period,
 )
 from ballscrew_monitor.recordings.tables.lines import BLANKS, cells_of_line, Line, separators_of
-from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.names import base_of, read_name
 from ballscrew_monitor.recordings.tables.numerals import plain_numeral
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
 from ballscrew_monitor.recordings.tables.unit_names import (
@@ -187,13 +187,18 @@ def are_other_names(
     are_known = (are_names and not is_remark) or any(
         is_unit(one) or read_name(one).kind for one in texts
     )
-    if len(texts) < len(words) or not are_known:
-        return False
+    return len(texts) == len(words) and are_known and not are_names_again(cells, names)
+
+
+def are_names_again(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Return True if cells of columns are the names or the units of the head."""
+    words = [cell.strip(f'{COMMENT} []()') for cell in cells]
+    plain = [base_of(name) for name in names]
     known = [
         {name.strip(' []()'), BRACKETS.sub('', name).strip(), *BRACKETS.findall(name)}
-        for name in names
+        for name in plain
     ]
-    return any(one not in held for one, held in zip(words, known, strict=True))
+    return all(one in held for one, held in zip(words, known, strict=True))
 
 
 def _surplus(row: int, cells: int, names: int, separator: str) -> str:

@@ -78,10 +78,12 @@ class ShortRows:
     """
     Rows of other numbers of cells than a table has columns, the first of them and its cells.
 
-    `longer` of them, of `count`, have more cells.
+    `longer` of them, of `count`, have more cells. A comment in the row `named`, 0 for none, names
+    the columns again.
 
     """
 
+    named: int = 0
     count: int = 0
     longer: int = 0
     first: int = 0
@@ -573,7 +575,8 @@ class _TextRows:
         called = {str(at): self._head.names[at] for at in sorted({places[name] for name in names})}
         tries, row, self.short.count, self.short.longer = TRIES, self._head.first, 0, 0
         for content in self._parts():
-            _check_further_heads(self._text.path, content, row, self._head)
+            named = _named_again(self._text.path, content, row, self._head)
+            self.short.named = self.short.named or named
             known = {str(places[name]): kind for name, kind in types.items() if tries}
             cells, is_typed = self._cells(content, row, [*map(int, called)], known)
             tries -= not is_typed
@@ -633,20 +636,29 @@ def _several_sections(path: Path, row: int) -> InputError:
     )
 
 
-def _check_further_heads(path: Path, content: bytes, row: int, head: Head) -> None:
-    """Raise InputError for a further head, or a comment of other names or units than its own."""
+def _named_again(path: Path, content: bytes, row: int, head: Head) -> int:
+    """
+    Return the row of the first comment before others that names the columns again, 0 for none.
+
+    Raises InputError for a further head, or a comment of other names or units than its own.
+
+    """
     if (at := content.find(END_OF_HEAD.encode())) >= 0:
         raise _several_sections(path, row + content.count(LINE_FEED, 0, at))
+    found = 0
     for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
         cells = match[1].decode(errors='replace').strip().split(head.separator)
-        if len(cells) == len(head.names) > 1 and heads.are_other_names(
-            cells, head.names, is_remark=True
-        ):
+        if not len(cells) == len(head.names) > 1:
+            continue
+        place = row + content.count(LINE_FEED, 0, match.start())
+        if heads.are_other_names(cells, head.names, is_remark=True):
             raise InputError(
-                f'log {path}: row {row + content.count(LINE_FEED, 0, match.start())} names or '
-                f'measures its columns otherwise than the head, {listed(cells)}: split the log '
-                'there'
+                f'log {path}: row {place} names or measures its columns otherwise than the head, '
+                f'{listed(cells)}: split the log there'
             )
+        if heads.are_names_again(cells, head.names) and content[match.end() :].strip():
+            found = found or place
+    return found
 
 
 def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:

@@ -16,7 +16,7 @@ import math
 
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.estimates import NEAR
-from ballscrew_monitor.recordings.tables.heads import Head
+from ballscrew_monitor.recordings.tables.heads import are_names_again, Head
 from ballscrew_monitor.recordings.tables.mapping import TableMap
 from ballscrew_monitor.recordings.tables.names import base_of, read_name
 from ballscrew_monitor.recordings.tables.read import Table
@@ -80,13 +80,31 @@ def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
     cure = f'name a time as `column` {INSTEAD}, or split the log there'
     cure = f'state {place}' if counter else cure
     last = table.first_row + table.rows - 1
-    if 0 < torn.cells < len(source.head.names) and torn.first + torn.count - 1 < last:
-        yield (
-            f'row {torn.first} holds {torn.cells} of {len(source.head.names)} cells, and rows '
-            f'follow it: samples may be missing there, which rows at equal distances close up: '
-            f'{cure}'
-        )
+    odd = [(torn.named or _named_again(table), 1, 'names the columns again')]
+    if 0 < torn.cells < len(source.head.names):
+        held = f'holds {torn.cells} of {len(source.head.names)} cells'
+        odd.insert(0, (torn.first, torn.count, held))
+    for row, count, words in odd:
+        if row and row + count - 1 < last:
+            yield (
+                f'row {row} {words}, and rows follow it: samples may be missing there, which rows '
+                f'at equal distances close up: {cure}'
+            )
     yield from _of_twins(mapping, source)
+
+
+def _named_again(table: Table) -> int:
+    """Return the first row that names the columns again as the head does, 0 for none."""
+    row = table.first_row
+    names = [name for name, reading in table.readings.items() if reading.note]
+    for block in table.source.blocks(names) if names else ():
+        if all(kind == pl.String for kind in block.dtypes):
+            are_words = pl.all_horizontal(pl.all().str.contains(r'\p{L}'))
+            for at in block.select(are_words.fill_null(False).arg_true()).to_series():
+                if are_names_again(block.row(at), names):
+                    return row + int(at)
+        row += block.height
+    return 0
 
 
 def _counts_samples(values: Array) -> bool:

@@ -101,6 +101,24 @@ def test_a_line_of_lost_samples_without_a_counter_is_no_sample(tmp_path, refused
     refused('overrun', read_series, path, by_rate(1))
 
 
+@pytest.mark.parametrize('sign', ['', '# '])
+@pytest.mark.parametrize('units', [' [mm/s]', ''])
+def test_names_between_rows_without_times_begin_another_run(sign, units, tmp_path, refused):
+    """Two runs of 200 rows below a sample time: how long the pause between them was is unknown."""
+    path = tmp_path / 'log.csv'
+    names = f'{sign}X speed{units};X force'
+    rows = [f'{speed:.4f};-300' for speed in SPEED[:200]]
+    path.write_text('\n'.join(['Sample time: 10 ms', names, *rows, '']))
+    content = guess(path).content
+    assert content['time'] == {'rate_Hz': RATE}
+    content['axes']['x']['speed']['unit'] = 'mm/s'
+    content['axes']['x']['load'] |= {'unit': 'N', 'magnitude': False}
+    mapping = make_map(content)
+    assert read_series(path, mapping).count == 200
+    path.write_text(path.read_text() + '\n'.join([names, *rows, '']))
+    refused('named_again', read_series, path, mapping)
+
+
 def test_a_row_that_is_cut_off_at_the_end_closes_up_nothing(tmp_path):
     path = sampler(tmp_path / 'log.txt', numbers=True)
     path.write_text(path.read_text() + '400\n')
