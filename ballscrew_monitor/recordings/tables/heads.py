@@ -294,7 +294,11 @@ class _Block:
             self.width -= 1  # a sign at the end of each line parts nothing
         fits = {at for at in self.data if self._fits(kinds[at])}
         self.begin = self._begin(kinds, fits)
-        self.begin += self._bare_factors() or -self._rows_with_words(kinds)
+        self.begin += (
+            self._bare_factors()
+            or -self._rows_with_words(kinds)
+            or -self._hollow_rows(kinds, fits)
+        )
         rows = [kinds[at] for at in fits if at >= self.begin]
         numbers = sum(row.count('n') for row in rows)
         filled = sum(len(row) - row.count('-') for row in rows)
@@ -339,6 +343,29 @@ class _Block:
             count += 1
         return count
 
+    def _hollow_rows(self, kinds: Sequence[Sequence[str]], fits: set[int]) -> int:
+        """Return how many rows before the begin go on with its times, or hold no number at all."""
+        rows = [self.rows[at] for at in sorted(fits) if at >= self.begin][: FOLLOWING + 2]
+        widths, columns = {len(row) for row in rows}, list(zip(*rows, strict=False))
+        time, found = next((at for at, cells in enumerate(columns) if _rises(cells)), -1), 0
+        times = [*columns[time]] if columns else []
+        for at in range(self.begin - 1, -1, -1):
+            row = self.rows[at]
+            if not any(row):
+                continue
+            times = [*(row[time:][:1]), *times][: FOLLOWING + 2]
+            words = [
+                cell
+                for cell, kind, number in zip(row, kinds[at], self.numeric, strict=False)
+                if number and kind == 'x'
+            ]
+            is_row = (time >= 0 and _rises(times)) or all(map(_is_unknown, row))
+            is_named = any(is_unit(word) or read_name(word).kind for word in words)
+            if len(row) not in widths or not is_row or is_named:
+                break
+            found = self.begin - at
+        return found
+
     def _bare_factors(self) -> int:
         """Return how many rows at the begin are factors and offsets: no time goes on with them."""
         end = self.begin + FOLLOWING + 2
@@ -369,6 +396,24 @@ def _goes_on(cells: Sequence[str]) -> bool:
     steps = sorted(later - before for before, later in zip(times, times[1:]))
     least, most = (part * steps[len(steps) // 2] for part in USUAL)
     return least > 0.0 and least <= steps[0] and steps[-1] <= most
+
+
+def _is_unknown(cell: str) -> bool:
+    """Return True for a word that stands for a number, as NaN does and a dash need not."""
+    return cell.lower() in NO_NUMBER and bool(cell.strip('-'))
+
+
+def _rises(cells: Sequence[str]) -> bool:
+    """Return True if cells are times that never fall and have no long gap, or all dates."""
+    times = [*map(_number, cells)]
+    if any(map(math.isnan, times)):
+        return all(
+            any(map(str.isdigit, one)) and TIME.fullmatch(one) and not NUMBER.fullmatch(one)
+            for one in cells
+        )
+    steps = sorted(later - before for before, later in zip(times, times[1:]))
+    usual = [step for step in steps if step > 0.0]
+    return bool(usual) and steps[0] >= 0.0 and steps[-1] < LONGEST_GAP * usual[len(usual) // 2]
 
 
 def _follows(cells: Sequence[str], count: int) -> bool:

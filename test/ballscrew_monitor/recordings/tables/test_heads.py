@@ -5,9 +5,12 @@
 import math
 
 from ballscrew_monitor.recordings.tables.heads import find_head, Line
+from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
 from hypothesis import given, strategies
+import numpy as np
 import pytest
 
 
@@ -265,3 +268,51 @@ def test_a_part_of_a_unit_stays_with_a_name_that_says_nothing(tmp_path):
         '\n'.join(['alpha,beta', 's,0.01 mm', *(f'{at},{at % 7}' for at in range(60))])
     )
     assert source_of(path).names() == ['alpha [s]', 'beta [0.01 mm]']
+
+
+@pytest.mark.parametrize(
+    ('first', 'time', 'rows'),
+    [
+        ('{};NaN;NaN', '{:.1f}', 40),
+        ('{};;', '{:.1f}', 40),
+        ('{};;', '2025-07-14T10:00:{:04.1f}Z', 40),
+        ('{};---;150', '{:.1f}', 40),
+        ('{};No data;No data', '{:.1f}', 40),
+        ('{};---;---', '2025-07-14T10:00:{:04.1f}Z', 40),
+        ('{};---;---\n', '{:.1f}', 40),
+        ('{};NaN;NaN', 'NaN', 40),
+        ('{};NaN;NaN', '{:.1f}', 1),
+        ('s;mm/s;N', '{:.1f}', 0),
+        ('-;-;-', '{:.1f}', 0),
+        (';;', '{:.1f}', 0),
+        ('Scale;1;1', '{:.1f}', 0),
+        ('1;Axis X;Axis X', '{:.1f}', 0),
+        ('7000;;', '{:.1f}', 0),
+        ('14.07.2025;;', '{:.1f}', 0),
+    ],
+)
+def test_rows_whose_time_goes_on_without_other_numbers_are_rows_of_the_table(first, time, rows):
+    """Units, labels, dates and counts above the first times are none."""
+    names, count = 't [s];X Speed [mm/s];X Force [N]', max(rows, 1)
+    above = [first.format(time.format(at / 10)) for at in range(count)]
+    below = [f'{time.format((at + rows) / 10)};{at % 7}.5;-300' for at in range(60)]
+    head = head_of('\n'.join([names, *above, *below]))
+    lines = '\n'.join([names, *above]).count('\n') // count  # of a row above
+    assert head.names[0] == 't [s]'
+    assert head.first == (2 if rows else 2 + lines * count)
+
+
+def test_rows_without_numbers_at_the_begin_are_lost_as_those_in_the_middle(tmp_path):
+    path = tmp_path / 'log.csv'
+    for begin in (0, 30):
+        lines = [
+            f'{at / 10};NaN;NaN' if begin <= at < begin + 40 else f'{at / 10};{at % 9};-300'
+            for at in range(100)
+        ]
+        path.write_text('\n'.join(['t [s];X Speed [mm/s];X Force [N]', *lines]))
+        axis = {'lead_mm': 10.0, 'speed': {'column': 'X Speed [mm/s]', 'unit': 'mm/s'}}
+        time = {'column': 't [s]', 'unit': 's', 'epoch': '2026-01-05T08:00:00Z'}
+        series = read_series(path, make_map({'time': time, 'axes': {'x': axis}}))
+        assert series.rows == (100,)
+        speeds = np.concatenate([rows.columns['x.speed'] for (rows,) in series.blocks()])
+        assert np.isfinite(speeds).sum() == 60
