@@ -45,6 +45,7 @@ MOST_HELD = 1_000_000  # repeated rows in a gap: in a longer one nothing is know
 SHOWING = 100_000  # of the first rows, which show whether a position has a slope
 COUNTERS = (2**32, 2**31)  # units of time after which a whole number of 32 bits begins again
 HUGE_GAP = 100  # times the usual time between rows
+SILENT, MOSTLY = 10, 0.9  # samples in a row that miss, of a group with one in most rows
 _BINS = 2 + math.ceil(math.log(LARGEST) / math.log1p(WIDTH))
 
 
@@ -258,14 +259,16 @@ class Times:
         self._even: EvenRows | None = None
         self._tail = np.zeros(0)
         with shown(table.rows, 'times looked through') as show:
-            for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
+            names = group.time_columns or list(group.columns)[:1]
+            for row, every, _, holes in self._told_with_holes(names):
+                times = _samples(every, holes)
                 known = np.isfinite(times)
                 rows = row + np.flatnonzero(known)
                 self.gate.add(times[known], rows)
                 self._course.add(times[known])
                 self._tail = np.append(self._tail, times)[-TAIL:]
                 if group.holes:
-                    silence.add(times[known], rows)
+                    silence.add(times, every, row)
                 show((row + len(times) - table.first_row) / table.rows)
         self.gate.finish()
         self.count, self._shown = self.gate.count, shown
@@ -489,12 +492,17 @@ class Times:
 
     def _told(self, names: Collection[str]) -> Iterator[Block]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
+        for row, times, block, holes in self._told_with_holes(names):
+            yield row, _samples(times, holes), block
+
+    def _told_with_holes(
+        self, names: Collection[str]
+    ) -> Iterator[tuple[int, Array, dict[str, Array], NDArray[np.bool_] | None]]:
+        """Yield blocks as `_told` does, with the times of all rows, and which have no sample."""
         row, midnights = 0, Midnights() if self._is_of_a_day else None
         for block, holes in self._table.blocks_with_holes(names, self.group.hollow):
             times = self._times(block, row, midnights)
-            if holes is not None:
-                times = np.where(holes, math.nan, times)
-            yield row + self._table.first_row, times, block
+            yield row + self._table.first_row, times, block, holes
             row += len(times)
 
     @property
@@ -548,33 +556,56 @@ class Times:
             )
 
 
+def _samples(times: Array, holes: NDArray[np.bool_] | None) -> Array:
+    """Return times [s], NaN where there is no sample."""
+    return times if holes is None else np.where(holes, math.nan, times)
+
+
 class Silence:
-    """Where a group has no sample for long while the rows of the log go on."""
+    """
+    Where a group has no sample for long while the rows of the log go on, also at its ends.
+
+    Few rows are long for a group that has a sample in most of them.
+
+    """
 
     def __init__(self) -> None:
         """Begin with no sample."""
-        self._last = np.zeros(0), np.zeros(0, np.int64)
         self._counts = np.zeros(HUGE_GAP + 1, np.int64)  # of the rows from sample to sample
         self._long: list[tuple[int, float]] = []
+        self._rows, self._held = np.zeros((2, 0)), np.zeros((2, 0))
+        """Times [s] and rows in the file of the first and last of all, and of those of samples."""
 
-    def add(self, times: Array, rows: Stamps) -> None:
-        """Take further samples, their times [s] and their rows in the file."""
-        rest, steps = (
-            np.diff(np.concatenate([last, one])) for last, one in zip(self._last, (times, rows))
+    def add(self, times: Array, every: Array, row: int) -> None:
+        """Take rows from `row` on, the times of samples [s] and of all, NaN where none is."""
+        samples, rows = (
+            np.array([one[known], row + known])
+            for one, known in ((one, np.flatnonzero(np.isfinite(one))) for one in (times, every))
         )
-        self._counts += np.bincount(np.minimum(steps, HUGE_GAP), minlength=HUGE_GAP + 1)
-        long = steps >= HUGE_GAP
+        rest, steps = np.diff(np.append(self._held[:, -1:], samples, axis=1))
+        counted = np.minimum(steps, HUGE_GAP).astype(np.int64)
+        self._counts += np.bincount(counted, minlength=HUGE_GAP + 1)
+        long = steps > self._least
         self._long += zip(steps[long].tolist(), rest[long].tolist(), strict=True)
-        self._last = (times[-1:], rows[-1:]) if len(times) else self._last
+        self._rows, self._held = (
+            np.append(before, one, axis=1)[:, [0, -1]] if one.size else before
+            for before, one in ((self._rows, rows), (self._held, samples))
+        )
+
+    @property
+    def _least(self) -> int:
+        """Return how many samples are missing at least."""
+        return SILENT if self._counts[1] >= MOSTLY * self._counts.sum() else HUGE_GAP
 
     def samples(self, step: float) -> int:
         """Return how many samples are missing, of which one usually comes after a `step` [s]."""
-        half = np.searchsorted(np.cumsum(self._counts), self._counts.sum() / 2)
-        return sum(
-            round(min(rows / max(int(half), 1), rest / step)) - 1
-            for rows, rest in self._long
-            if rest > HUGE_GAP * step
-        )
+        half = max(int(np.searchsorted(np.cumsum(self._counts), self._counts.sum() / 2)), 1)
+        silent = [(rows - half, rest - step) for rows, rest in self._long]
+        if self._held.size:
+            ends = (self._held - self._rows) * (1, -1)
+            silent += zip(ends[1].tolist(), ends[0].tolist(), strict=True)
+        missing = (round(min(rows / half, rest / step)) for rows, rest in silent if step > 0.0)
+        return sum(one for one in missing if one >= self._least)
 
 
 class Course:

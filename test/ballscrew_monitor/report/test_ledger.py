@@ -197,7 +197,8 @@ def test_rows_of_a_table_are_counted_as_messages_are(tmp_path, capsys):
     [
         ('every second row, then none', 420, 220),
         ('none for a while', 300, 180),
-        ('the rows end', 180, 180),
+        ('none at the end', 300, 180),
+        ('none at the begin', 300, 180),
         ('rows of two tables', 300, 300),
         ('too few cells', 300, 288),
     ],
@@ -211,7 +212,10 @@ def test_a_speed_that_is_empty_for_long_is_missing(tmp_path, capsys, name, promi
         'none for a while': [
             f'{row / 100},{"" if 100 <= row < 220 else 50},-1000' for row in range(300)
         ],
-        'the rows end': [f'{row / 100},{50 if row < 180 else ""},-1000' for row in range(300)],
+        'none at the end': [f'{row / 100},{50 if row < 180 else ""},-1000' for row in range(300)],
+        'none at the begin': [
+            f'{row / 100},{50 if row >= 120 else ""},-1000' for row in range(300)
+        ],
         'rows of two tables': [
             *(f'{row / 100},50,' for row in range(300)),
             *(f'{row / 100},,-1000' for row in range(300)),

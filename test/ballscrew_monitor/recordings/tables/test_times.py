@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The usual time between rows, out of bins that do not grow with the rows."""
 
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.times import Steps, WIDTH
 import numpy as np
 import pytest
@@ -43,3 +45,21 @@ def test_a_pause_between_runs_is_no_step(block):
         end = begin + block
         steps.add(stamps[begin:end], runs[begin:end])
     assert (steps.median, steps.longest, steps.longest_row) == (210.0, 400.0, 2)
+
+
+@pytest.mark.parametrize('begin', [0, 30, 60])
+@pytest.mark.parametrize(('lost', 'every'), [(40, 1), (40, 5), (0, 5)])
+def test_empty_rows_at_the_ends_are_missing_as_those_in_the_middle(begin, lost, every, tmp_path):
+    """Of 100 rows 40 hold a temperature alone, if any; that is known in each row or each fifth."""
+    lines = ['t [s];X Speed [mm/s];X Force [N];Oil temperature [°C]']
+    for at in range(100):
+        motion = ';' if begin <= at < begin + lost else f'{at % 9}.5;-300'
+        lines.append(f'{at / 10:.1f};{motion};{"" if at % every else 38.5}')
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join(lines))
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'X Speed [mm/s]', 'unit': 'mm/s'}}
+    axis['temperature'] = {'column': 'Oil temperature [°C]', 'unit': 'degC'}
+    time = {'column': 't [s]', 'unit': 's', 'epoch': '2026-01-05T08:00:00Z'}
+    series = read_series(path, make_map({'time': time, 'axes': {'x': axis}}))
+    assert series.rows == (100, 100 // every)
+    assert series.counts == (100 - lost, 100 // every)
