@@ -212,7 +212,9 @@ def _rate(case: AxisCase, source: Source) -> float:
         source = Source.SPEED
     gaps, silent = case.survey.gaps[source], 0.0
     refused = sum(case.outcome.refused.get(source, {}).values())
-    if source is not Source.SPEED:
+    if source is Source.SPEED:
+        silent = case.survey.no_speed
+    else:
         silent = seconds(case.settings.timeouts[source]) * gaps.count
         if refused:
             return steps / span  # of these gaps some are no silence

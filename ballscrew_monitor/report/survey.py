@@ -100,7 +100,8 @@ class Survey:
     samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
     start and length [ns]; `missed` [s] of the gaps lies between two samples in motion. `energy`
     [J] by zone. A log may hold several `runs`; the `pauses` [s]
-    between these are on the time line alone.
+    between these are on the time line alone. `no_speed` [s] lies before the first and behind the
+    last sample of the speed, as far as either is a gap.
 
     """
 
@@ -125,6 +126,7 @@ class Survey:
     missed: float = 0.0
     runs: int = 1
     pauses: float = 0.0
+    no_speed: float = 0.0
 
     @property
     def rest(self) -> float:
@@ -332,7 +334,7 @@ class Surveyor:
         self._gaps: list[tuple[int, int]] = []
         self._gap_count = self._gap_time = self._missed = 0
         self._last_sample, self._last_moved = np.empty((2, 0), np.int64), np.empty(0, np.bool_)
-        self._run, self._runs = 0, 1
+        self._run, self._runs, self._speeds = 0, 1, np.empty(0, np.int64)
 
     def add(self, rows: NDArray[Any], run: int = 0) -> None:
         """Take the next rows, an array of ROW, of the run of a number."""
@@ -344,6 +346,8 @@ class Surveyor:
         lead, standstill = self._surface.lead, self._limits.standstill_speed
         compiled_sums()(self._sums, rows, sure, lead, standstill, self._max_gap)
         of_speed = rows[~rows['tick']]
+        stamps = np.append(self._speeds, of_speed['stamp'])
+        self._speeds = stamps[[0, -1]] if stamps.size else stamps
         times = np.array([of_speed['stamp'], of_speed['now']])
         samples = np.concatenate([self._last_sample, times], axis=1)
         moved = np.abs(of_speed['speed']) >= standstill
@@ -376,6 +380,7 @@ class Surveyor:
         by_stamp = span <= STRAY * log_span + STRAY_MARGIN
         # Runs whose stamps begin again lie over each other: they last longer than the span.
         pauses = sums.pauses + span - (sums.stamp - sums.begin) if self._runs > 1 else 0
+        ends = np.abs(self._speeds - (sums.first, sums.last)) if self._speeds.size else np.zeros(2)
         longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
         gaps = zip(Source, zip(sums.gaps, sums.gap_time))
         return Survey(
@@ -401,6 +406,7 @@ class Surveyor:
             missed=self._missed / SECOND,
             runs=self._runs,
             pauses=pauses / SECOND if by_stamp else 0.0,
+            no_speed=float(ends[ends > self._max_gap].sum()) / SECOND if by_stamp else 0.0,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
             speed_gaps=tuple((at, length) for length, at in longest_first),

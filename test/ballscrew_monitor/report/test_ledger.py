@@ -228,8 +228,11 @@ def test_a_speed_that_is_empty_for_long_is_missing(tmp_path, capsys, name, promi
     arguments = table(path, lambda row: ('', ''))
     path.write_text('t,v,f\n' + '\n'.join(hollow[name]) + '\n')
     assert cli.main([*arguments, '--json']) == int(judged < 0.95 * promised)
-    ledger = json.loads(capsys.readouterr().out)['x']['inputs']['speed']['ledger']
+    speed = json.loads(capsys.readouterr().out)['x']['inputs']['speed']
+    ledger = speed['ledger']
     assert (ledger['promised'], ledger['judged']) == (promised, judged)
+    if name.startswith('none'):
+        assert speed['rate_Hz'] == pytest.approx(100.0)
     missing = promised - judged
     assert ledger['losses'] == ({TableLog.absent: missing} if missing else {})
 
