@@ -656,7 +656,7 @@ def _named_again(path: Path, content: bytes, row: int, head: Head) -> int:
                 f'log {path}: row {place} names or measures its columns otherwise than the head, '
                 f'{listed(cells)}: split the log there'
             )
-        if heads.are_names_again(cells, head.names) and content[match.end() :].strip():
+        if heads.are_names_again(cells, head.names) and content[slice(match.end(), None)].strip():
             found = found or place
     return found
 
