@@ -15,8 +15,8 @@ import itertools
 import math
 
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
-from ballscrew_monitor.recordings.tables.estimates import NEAR
-from ballscrew_monitor.recordings.tables.heads import are_names_again, Head
+from ballscrew_monitor.recordings.tables.estimates import NEAR, usual_step
+from ballscrew_monitor.recordings.tables.heads import are_names_again, Head, USUAL
 from ballscrew_monitor.recordings.tables.mapping import TableMap
 from ballscrew_monitor.recordings.tables.names import base_of, read_name
 from ballscrew_monitor.recordings.tables.read import Table
@@ -27,7 +27,6 @@ import polars as pl
 from surrogate.files import InputError
 
 MOSTLY = 0.9  # of the steps of a counter are 1
-USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
 INSTEAD = 'in the map instead of `rate_Hz`'
 
 
@@ -59,9 +58,9 @@ def twin_times(source: Source) -> dict[str, Array]:
 
 def _is_even(values: Array) -> bool:
     """Return True if the known numbers of a column rise evenly."""
-    steps = np.diff(values[np.isfinite(values)])
-    least, most = (part * float(np.median(steps)) for part in USUAL) if len(steps) else (0.0, 0.0)
-    return least > 0.0 and bool(((steps >= least) & (steps <= most)).all())
+    steps, usual = np.diff(values[np.isfinite(values)]), usual_step(values)
+    least, most = (part * usual for part in USUAL)
+    return usual > 0.0 and bool(((steps >= least) & (steps <= most)).all())
 
 
 def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:

@@ -42,9 +42,9 @@ WITHIN: Mapping[tuple[Lay, State], float] = {
 }
 """Standard deviation of the logarithm of the film factor between strips of one raceway by its lay
 and state [-], pooled by `studies/own_strips.py: within`: 8 and 20 isotropic strips, 36 along the
-track, 16 across it. New isotropic ones scatter more than those that ran in (F test, 0.7 %), others
-do not show it. Those 8 leave 6 degrees of freedom: theirs is 0.079 times Student's t over the
-normal quantile, 1.943/1.645."""
+track, 16 across it. New isotropic ones scatter more than those that ran in (one-sided F, 0.7 %),
+others do not show it. Those 8 leave 6 degrees of freedom: theirs is 0.079 times Student's t over
+the normal quantile, 1.943/1.645."""
 FAILED = 0.02
 """Share of the steps about the onset that may fail in a strip that corrects the law [-]: five of
 some 260, the share that leaves a whole march in no doubt. With ten times the RCS of their
