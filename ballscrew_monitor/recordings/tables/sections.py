@@ -14,7 +14,9 @@ from pathlib import Path
 from ballscrew_monitor.recordings.words import short
 from surrogate.files import InputError
 
-MARK, END = b'LabVIEW Measurement', b'***End_of_Header***'
+MARK = b'LabVIEW Measurement'
+END_OF_HEAD, HEADS = '***End_of_Header***', 2
+"""Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 OWN = frozenset({b'Date', b'Time', b'Samples'})
 """Fields of a head that are of its section alone."""
 APART = 'save each section as a log'
@@ -28,9 +30,9 @@ def joined_sections(path: Path, content: bytes) -> tuple[bytes, int]:
     times, which would begin again.
 
     """
-    lines = content.splitlines(keepends=True)
-    ends = [at for at, line in enumerate(lines) if line.startswith(END)]
-    if len(ends) < 3:
+    lines, end_of_head = content.splitlines(keepends=True), END_OF_HEAD.encode()
+    ends = [at for at, line in enumerate(lines) if line.startswith(end_of_head)]
+    if len(ends) <= HEADS:
         return content, max(len(ends) - 1, 0)
     begins = [_begin(lines, end) for end in ends[1:]]
     first, *others = [

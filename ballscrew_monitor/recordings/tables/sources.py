@@ -33,7 +33,7 @@ from ballscrew_monitor.recordings.tables.lines import (
 from ballscrew_monitor.recordings.tables.marked import marked
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.sections import joined_sections, MARK
+from ballscrew_monitor.recordings.tables.sections import END_OF_HEAD, HEADS, joined_sections, MARK
 from ballscrew_monitor.recordings.tables.workbook import holds_formulas_alone, lines_of, read_sheet
 from ballscrew_monitor.recordings.words import counted, listed, short
 import numpy as np
@@ -58,8 +58,6 @@ SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
 COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
 """Names of a last column whose cells a row need not have."""
-END_OF_HEAD, HEADS = '***End_of_Header***', 2
-"""Line that ends a head of LabVIEW, and how many of them a file with one section has."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 NARROW_MARK = b'\xef\xbb\xbf'
 LAST_WORDS = re.compile(rb'(?:(?<=\n)|(?<=\r))[\s*#=<>.-]*[A-Za-z][A-Za-z *#=<>.-]{0,40}\s*\Z')
