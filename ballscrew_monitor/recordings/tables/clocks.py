@@ -83,6 +83,7 @@ STEPS = (
     (r'(?i)^(?:mon|tue|wed|thu|fri|sat|sun|mo|di|mi|do|fr|sa|so)[a-z]*\.?,? +', ''),
     (r'(\d)T(\d)', '$1 $2'),
     (r'(?i)\s*(?:Z|UTC|GMT)$', ''),
+    (r'^(\p{L}{3} +\d{1,2}) +(\d\d:\d\d:\d\d) +(\d{4})$', '$1 $3 $2'),
     (r'(\d:\d\d),(\d)', '$1.$2'),
     (r'(\d:\d\d:\d\d)[:;](\d)', '$1.00$2'),
     *MILLISECONDS,

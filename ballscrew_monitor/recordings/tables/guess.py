@@ -35,6 +35,7 @@ from ballscrew_monitor.recordings.tables.first_map.validity import ask_for_gaps,
 from ballscrew_monitor.recordings.tables.names import is_commanded, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
 from ballscrew_monitor.recordings.tables.sources import source_of
+from ballscrew_monitor.recordings.tables.stated_rate import doubts_of_rate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 from surrogate.files import InputError
 import yaml
@@ -103,6 +104,8 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     for name in log.axes:
         _fill(draft, times, name)
     stated = time.stated or time.without_column()
+    if stated.get('rate_Hz'):
+        _ask_for_rate(draft, stated)
     ask_for_factors(draft)
     note_joined_tables(draft)
     note_unused(draft, {*stated.values(), *times.of_inputs.values()})
@@ -126,6 +129,20 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
         notes=tuple(draft.notes),
         picture=tuple(_picture(draft, times, stated)),
     )
+
+
+def _ask_for_rate(draft: Draft, stated: dict[str, Any]) -> None:
+    """Leave the rate of the head without a value, and ask for it, if the rows deny it."""
+    inputs = {
+        f'axes.{name}.{kind}': one['column']
+        for name, kinds in draft.used.items()
+        for kind, one in kinds.items()
+        if kind in INPUTS and 'column' in one
+    }
+    for doubt in doubts_of_rate(stated['rate_Hz'], inputs, draft.log.table):
+        draft.unstated.append(f'the head states {stated["rate_Hz"]:g} Hz, but {doubt}')
+        stated['rate_Hz'] = None
+        return
 
 
 def _fill(draft: Draft, times: OwnTimes, name: str) -> None:

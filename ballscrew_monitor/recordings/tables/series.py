@@ -193,7 +193,12 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     for name in mapping.time_columns:
         if name in table.left_out:
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
-    of_rate = doubts_of_rate(mapping, table) if mapping.time is None else ()
+    inputs = {
+        f'axes.{axis.name}.{kind}': column.name
+        for axis in mapping.axes
+        for kind, column in axis.columns.items()
+    }
+    of_rate = doubts_of_rate(mapping.rate, inputs, table) if mapping.time is None else ()
     for doubt in itertools.chain(of_rate, doubts_of_columns(mapping, table)):
         raise InputError(f'log {path}: {doubt}')
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]

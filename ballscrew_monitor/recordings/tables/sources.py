@@ -77,11 +77,13 @@ class ShortRows:
     Rows of other numbers of cells than a table has columns, the first of them and its cells.
 
     `longer` of them, of `count`, have more cells. A comment in the row `named`, 0 for none, names
-    the columns again.
+    the columns again. `blanks` rows hold nothing at all, of which the first is `blank`.
 
     """
 
     named: int = 0
+    blank: int = 0
+    blanks: int = 0
     count: int = 0
     longer: int = 0
     first: int = 0
@@ -98,6 +100,9 @@ class ShortRows:
         """Return rows from `first` on, those of too few or more cells without any, and count."""
         if len(widths) != rows.height:
             return rows
+        if blanks := int((widths == 0).sum()):
+            self.blank = self.blank or first + int((widths == 0).argmax())
+            self.blanks += blanks
         uneven = longer | ((widths > 0) & (widths < width))
         if not uneven.any():
             return rows
@@ -572,6 +577,7 @@ class _TextRows:
         places = {name: at for at, name in enumerate(self._head.names)}
         called = {str(at): self._head.names[at] for at in sorted({places[name] for name in names})}
         tries, row, self.short.count, self.short.longer = TRIES, self._head.first, 0, 0
+        self.short.blanks = 0
         for content in self._parts():
             named = _named_again(self._text.path, content, row, self._head)
             self.short.named = self.short.named or named
@@ -663,11 +669,12 @@ def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> boo
     """
     Return True if each row of a text has as many cells as a width.
 
-    Where no cell looks empty, that many cells in all tell it: a longer row is refused.
+    Where no cell looks empty, that many cells in all tell it: a longer row is refused. Of a single
+    column each row is looked at, as no sign shows a blank one.
 
     """
     lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
-    letters, count, is_empty = np.frombuffer(content, np.uint8), 0, False
+    letters, count, is_empty = np.frombuffer(content, np.uint8), 0, width == 1
     for begin in range(0, len(letters), WINDOW):  # whose arrays stay in the cache
         part = letters[slice(begin, begin + WINDOW + 1)]
         signs, low = part == ord(separator), part <= ord(AFTER_EMPTY)

@@ -8,7 +8,7 @@ their own. Columns that count samples and columns of times show both.
 
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 import contextlib
 import dataclasses
 import itertools
@@ -63,13 +63,18 @@ def _is_even(values: Array) -> bool:
     return usual > 0.0 and bool(((steps >= least) & (steps <= most)).all())
 
 
-def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
-    """Yield why the rows of a table are not at the equal distances that a map states."""
+def doubts_of_rate(rate: float, inputs: Mapping[str, str], table: Table) -> Iterator[str]:
+    """
+    Yield why the rows of a table are not at the equal distances of a rate [Hz].
+
+    `inputs` are the columns that are read, by their places in the map.
+
+    """
     source = table.source
-    torn, used = dataclasses.replace(source.short), {*mapping.columns}
+    torn, used = dataclasses.replace(source.short), {*inputs.values()}
     others = first_numbers(source, [name for name in source.names() if name not in used])
     counter = next((name for name, values in others.items() if _counts_samples(values)), '')
-    place = f'`time: {{column: {counter}, unit: s, scale: {1.0 / mapping.rate:.9g}}}` {INSTEAD}'
+    place = f'`time: {{column: {counter}, unit: s, scale: {1.0 / rate:.9g}}}` {INSTEAD}'
     if counter and (jump := _jump(source, counter)):
         row, before, after = jump
         yield (
@@ -79,7 +84,10 @@ def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
     cure = f'name a time as `column` {INSTEAD}, or split the log there'
     cure = f'state {place}' if counter else cure
     last = table.first_row + table.rows - 1
-    odd = [(torn.named or _named_again(table), 1, 'names the columns again')]
+    odd = [
+        (torn.named or _named_again(table), 1, 'names the columns again'),
+        (torn.blank, torn.blanks, 'is blank'),
+    ]
     if 0 < torn.cells < len(source.head.names):
         held = f'holds {torn.cells} of {len(source.head.names)} cells'
         odd.insert(0, (torn.first, torn.count, held))
@@ -89,7 +97,7 @@ def doubts_of_rate(mapping: TableMap, table: Table) -> Iterator[str]:
                 f'row {row} {words}, and rows follow it: samples may be missing there, which rows '
                 f'at equal distances close up: {cure}'
             )
-    yield from _of_twins(mapping, source)
+    yield from _of_twins(inputs, source)
 
 
 def _named_again(table: Table) -> int:
@@ -143,15 +151,14 @@ def _jump(source: Source, counter: str) -> tuple[int, float, float] | None:
     return next(((rows[0], *pair) for pair, rows in jumps.items()), None)
 
 
-def _of_twins(mapping: TableMap, source: Source) -> Iterator[str]:
+def _of_twins(inputs: Mapping[str, str], source: Source) -> Iterator[str]:
     """Yield what is wrong if inputs stand behind different times of one name."""
     twins, names = twin_times(source), source.names()
     held: dict[str, str] = {}
-    for axis in mapping.axes:
-        for kind, column in axis.columns.items():
-            before = [name for name in names[: names.index(column.name)] if name in twins]
-            if before:
-                held.setdefault(before[-1], f'axes.{axis.name}.{kind}')
+    for key, column in inputs.items():
+        before = [name for name in names[: names.index(column)] if name in twins]
+        if before:
+            held.setdefault(before[-1], key)
     for name, other in itertools.pairwise(held):
         first, later = twins[name], twins[other]
         if base_of(name) == base_of(other) and not np.array_equal(first, later, equal_nan=True):

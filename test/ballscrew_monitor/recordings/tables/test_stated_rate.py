@@ -117,6 +117,22 @@ def test_names_between_rows_without_times_begin_another_run(sign, units, tmp_pat
     assert read_series(path, mapping).count == 200
     path.write_text(path.read_text() + '\n'.join([names, *rows, '']))
     refused('named_again', read_series, path, mapping)
+    assert guess(path).content['time'] == {'rate_Hz': None}
+
+
+@pytest.mark.parametrize('columns', [1, 2])
+def test_a_blank_line_between_rows_without_times_begins_another_run(columns, tmp_path, says):
+    """One that ends the text begins none."""
+    path = tmp_path / 'log.csv'
+    rows = [';'.join([f'{speed:.4f}', '-300.0'][:columns]) for speed in SPEED[:200]]
+    head = ['Sample time: 10 ms', ';'.join(['X speed [mm/s]', 'X force [N]'][:columns])]
+    path.write_text('\n'.join([*head, *rows, '', '']))
+    made = guess(path)
+    assert made.content['time'] == {'rate_Hz': RATE}
+    path.write_text('\n'.join([*head, *rows, '', *rows, '']))
+    made = guess(path)
+    assert made.content['time'] == {'rate_Hz': None}
+    assert any(says('blank') in one for one in made.unstated)
 
 
 def test_a_row_that_is_cut_off_at_the_end_closes_up_nothing(tmp_path):
