@@ -88,7 +88,7 @@ class Bag:
                 count = info.count + (self.topics[name].count if name in self.topics else 0)
                 self.topics[name] = dataclasses.replace(info, count=count)
         if not any(info.count for info in self.topics.values()):
-            reason = '; '.join(self._missing) or 'at least one is needed'
+            reason = '; '.join(self.notes) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {reason}')
         held = [(name, info) for name, info in sorted(self.topics.items()) if info.count]
         if all(info.encoding not in ('cdr', '') for _, info in held):

@@ -126,6 +126,15 @@ def test_pages_of_a_write_ahead_log_that_are_not_used_are_told(place, left, says
     assert bag.notes == [says('pages_left_out', file=path / 'a_0.db3')]
 
 
+def test_a_bag_whose_messages_are_all_in_damaged_pages_says_so(left, refused):
+    path = left('WAL')
+    log = (path / 'a_0.db3-wal').rename(path / 'held')
+    with contextlib.closing(sqlite3.connect(path / 'a_0.db3', isolation_level=None)) as base:
+        base.execute('DELETE FROM messages')
+    damage(log.rename(path / 'a_0.db3-wal'), 16)
+    refused('all_left_out', Bag, path)
+
+
 def test_pages_of_an_earlier_round_of_a_write_ahead_log_are_no_loss(left, tmp_path):
     left('WAL')
     bag = tmp_path / 'other'
