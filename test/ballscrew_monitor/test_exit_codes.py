@@ -76,6 +76,7 @@ def written(folder, rows=ROWS, mapping=MAP):
 @example(changes=[(7, 1, '1e200')])
 @example(changes=[(7, 1, '9' * 400), (8, 2, '9' * 400)])
 @example(changes=[(0, 0, '1e300')])
+@example(changes=[(0, 0, '-1e300'), (0, 2, '1e200')])
 def test_no_cell_of_a_log_is_a_fault_of_the_program(folder, changes):
     rows = [list(row) for row in ROWS]
     for row, column, text in changes:

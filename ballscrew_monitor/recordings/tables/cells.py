@@ -292,7 +292,7 @@ class Cells:
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
         numbers = _finite(_points, cells, self._none)
-        pointed = _holds(cells, '.') if not self.signs.shows('.') else np.ones(len(cells), bool)
+        pointed = _holds(cells, '.')
         if np.isfinite(numbers).all():  # none of them holds a comma
             read = points.take(numbers, cells, self._row)
             if not pointed.any():
@@ -300,7 +300,7 @@ class Cells:
             if not self.signs.shows('.'):
                 self._look(cells, pointed)
             if self.signs.shows('.') and not self.signs.shows(','):
-                commas.pass_over(cells, self._row, filled=True)
+                commas.take(np.where(pointed, math.nan, numbers), cells, self._row)
             else:
                 commas.add(cells, self._row)
             return read

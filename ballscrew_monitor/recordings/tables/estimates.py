@@ -233,7 +233,7 @@ def unit_by_motion(
     mean, moved = (speed[1:] + speed[:-1]) / 2 * np.diff(times), np.diff(position)
     good = np.isfinite(mean) & np.isfinite(moved)
     across, along = float(moved[good] @ mean[good]), float(mean[good] @ mean[good])
-    if not across > 0.0 or across**2 < ALIKE * along * float(moved[good] @ moved[good]):
+    if not across > 0.0 or across * across < ALIKE * along * float(moved[good] @ moved[good]):
         return ''
     fits = {
         unit

@@ -37,6 +37,7 @@ from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.stated_rate import doubts_of_rate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
+import numpy as np
 from surrogate.files import InputError
 import yaml
 
@@ -88,6 +89,7 @@ def names_motion(path: Path) -> bool:
     return True
 
 
+@np.errstate(over='ignore', invalid='ignore')  # of numbers that no machine has
 def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     """
     Return a first map of the log at `path`, and show how far it is read.

@@ -55,6 +55,7 @@ LISTS = [strategies.lists(cells, min_size=1, max_size=12) for cells in BOTH]
 @given(LISTS[0], strategies.integers(1, 12))
 @example(['1.5', '2,5', '2,5'], 1)
 @example(['1.5', '2,5', '2,5', '2,5', ' 12 '], 1)
+@example(['1.5', ' 12 ', '2,5', '2,5'], 1)
 def test_numbers_are_read_with_the_sign_of_most_part_by_part(texts, block):
     check_column(texts, block)
 
