@@ -242,7 +242,7 @@ KINDS = {
     'shdr': Kind(
         begins=_is_shdr,
         expected='lines of an MTConnect adapter, a time and pairs of a name and a value each',
-        read=lambda path: Signals(frame=line_messages.read_shdr(path), program=ADAPTER),
+        read=line_messages.read_shdr,
     ),
     'echo': Kind(
         begins=lambda head: line_messages.is_echo(long_form.first_lines(head)),

@@ -62,7 +62,11 @@ def column_of_sources(
 
 
 def _tells_apart(cells: Sequence[str], times: Array) -> bool:
-    cells = cells[: len(times)]
+    """Return True if cells of rows at times [s] do so; an empty one tells nothing."""
+    filled = [at for at, cell in enumerate(cells[: len(times)]) if cell]
+    cells, times = [cells[at] for at in filled], times[filled]
+    if len(cells) < 2:
+        return False
     changes = np.array([one != other for one, other in itertools.pairwise(cells)])
     of_texts = not any(letter.isdigit() for letter in cells[0])
     if of_texts and changes.mean() >= IN_TURN:

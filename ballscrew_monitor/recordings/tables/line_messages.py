@@ -19,17 +19,21 @@ from ballscrew_monitor.recordings.tables import names
 from ballscrew_monitor.recordings.tables.apart import check_room
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.codings import text_of
+from ballscrew_monitor.recordings.tables.layouts import ADAPTER
 from ballscrew_monitor.recordings.tables.long_form import FEWEST, is_number
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
+from ballscrew_monitor.recordings.tables.signals import Signals
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 import polars as pl
 
-SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?\|[^|\r\n\d.,+-][^|\r\n]*\|', re.M)
+SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?(?:@[\d.]+)?\|[^|\r\n\d.,+-][^|\r\n]*\|', re.M)
 STAMP = '%Y-%m-%dT%H:%M:%S%.f'
 HELD = 1.5  # times the usual time between changes, after which a value is repeated
 MOST_HELD = 100_000  # repeated values of a signal
+LIST = re.compile(r'\d+\|[\d.]*\|[-+\d.eE]+(?: +[-+\d.eE]+)+')
+"""Number, rate and values of a time series of an adapter."""
 TOPIC_STAMP = re.compile(r'\d{1,10},\d{1,9}')
 MARKS = '#-'  # of a line that is no message
 FIELDS = ('position', 'velocity', 'effort')
@@ -42,30 +46,40 @@ def is_shdr(text: bytes) -> bool:
     return 2 * len(SHDR.findall(text)) > lines
 
 
-def read_shdr(path: Path) -> pl.DataFrame:
-    """Return the signals of lines of an adapter; a value that stays is repeated."""
+def read_shdr(path: Path) -> Signals:
+    """
+    Return the signals of lines of an adapter that hold numbers; a value that stays is repeated.
+
+    A key with a list of values, or with numbers that are written in another way, is left out.
+
+    """
     found: dict[str, tuple[list[str], list[float]]] = {}
-    odd: set[str] = set()  # signals some of whose numbers are written in another way
+    left_out: dict[str, str] = {}
     with path.open(encoding='utf-8', errors='replace') as stream:
         for line in stream:
             stamp, *rest = line.rstrip('\r\n').split('|')
-            for key, value in zip(rest[::2], rest[1::2], strict=False):
-                name = key.rpartition(':')[2]
-                if stamp[:1].isdigit() and read_name(name).kind:
-                    stamps, values = found.setdefault(name, ([], []))
-                    stamps.append(stamp.rstrip('Z'))
-                    values.append(_number(value))
-                    if math.isnan(values[-1]) and value[-1:].isdigit():
-                        odd.add(name)
+            moment = stamp.partition('@')[0].rstrip('Z')  # behind @ stands a duration
+            for at in range(0, len(rest) - 1 if stamp[:1].isdigit() else 0, 2):
+                name, value = rest[at].rpartition(':')[2], rest[at + 1]
+                if not name[:1].isalpha():
+                    continue
+                stamps, values = found.setdefault(name, ([], []))
+                stamps.append(moment)
+                values.append(_number(value))
+                if LIST.fullmatch('|'.join(rest[slice(at + 1, at + 4)])):
+                    left_out[name] = 'it holds lists of values, and single ones are read'
+                elif math.isnan(values[-1]) and value[-1:].isdigit() and read_name(name).kind:
+                    left_out[name] = f'{short(repr(value))} is no number with a decimal point'
     frames = {}
     for name, (stamps, values) in found.items():
         times = pl.Series(stamps).str.to_datetime(STAMP, time_unit='ns', strict=False)
         frame = pl.DataFrame({'time': times, name: values}).drop_nulls('time').sort('time')
-        if name not in odd and frame[name].is_finite().sum() > 1:
+        if name not in left_out and frame[name].is_finite().sum() > 1:
             frames[name] = frame.unique('time', keep='last', maintain_order=True)
     rows = list(_by_axis(frames))
     check_room(sum(frame.height for frame in rows), 1 + len(frames))
-    return pl.concat(rows, how='diagonal').sort('time') if rows else pl.DataFrame()
+    frame = pl.concat(rows, how='diagonal').sort('time') if rows else pl.DataFrame()
+    return Signals(frame=frame, left_out=left_out, program=ADAPTER)
 
 
 def _by_axis(frames: Mapping[str, pl.DataFrame]) -> Iterator[pl.DataFrame]:

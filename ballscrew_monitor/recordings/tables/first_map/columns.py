@@ -34,6 +34,7 @@ from surrogate.units import TURN
 EPOCH = '2000-01-01T00:00:00Z'
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
+FEW_NAMED = 3  # parts of a file that are not read
 BY_HAND = (
     'a map may name one, such as `axes: {x: {speed: {column: ..., unit: mm/s}, lead_mm: 10.0}}`'
 )
@@ -154,7 +155,8 @@ class Columns:
         }
         if not self.axes:
             of_no_unit = names.unknown_units(self.named)
-            held = [listed(self.source.names()), *(of_no_unit or [BY_HAND])]
+            unread = [f'not {name}, as {why}' for name, why in self.source.left_out.items()]
+            held = [listed(self.source.names()), *unread[:FEW_NAMED], *(of_no_unit or [BY_HAND])]
             raise InputError(
                 f'log {self.path}: no column looks like the speed or position of an axis, it '
                 f'holds {"; ".join(held)}'

@@ -109,11 +109,49 @@ def test_a_load_on_change_holds_until_the_next_and_is_an_amount(tmp_path):
     np.testing.assert_array_equal(np.sign(torque), np.sign(np.cos(seconds[known] / 8.0)))
 
 
-def test_a_signal_with_numbers_of_another_form_is_left_out(tmp_path):
+@pytest.mark.parametrize(
+    ('form', 'why'),
+    [("1'060", 'other_form'), ('3|100|58 59 60', 'lists'), ('3||58.5 59 60', 'lists')],
+)
+def test_a_signal_with_lists_or_numbers_of_another_form_is_left_out(form, why, tmp_path, says):
     path = tmp_path / 'mill.shdr'
     adapter(path)
-    path.write_text(path.read_text().replace('X1load|60', "X1load|1'060"))
-    assert source_of(path).names() == ['time', 'X1actm']
+    path.write_text(path.read_text().replace('X1load|60', f'X1load|{form}'))
+    source = source_of(path)
+    assert source.names() == ['time', 'X1actm']
+    assert source.left_out == {'X1load': says(why)}
+
+
+def test_a_log_whose_motion_is_in_lists_says_so(tmp_path, refused):
+    path = tmp_path / 'mill.shdr'
+    adapter(path)
+    lists = path.read_text().replace('X1actm|', 'X1pos|3|100|1 2 ')
+    path.write_text(lists)
+    refused('no_motion', guess, path)
+
+
+@pytest.mark.parametrize('name', ['X1pos', 'X1position', 'X1act'])
+def test_positions_of_adapters_have_names_of_several_kinds(name, tmp_path):
+    path = tmp_path / 'mill.shdr'
+    adapter(path)
+    path.write_text(path.read_text().replace('X1actm', name).replace('Z|', 'Z@300.0|'))
+    axis = guess(path).content['axes']['x']
+    assert {kind: axis[kind]['column'] for kind in ('position', 'torque')} == {
+        'position': name,
+        'torque': 'X1load',
+    }
+
+
+def test_a_map_may_name_any_key_of_an_adapter_that_holds_numbers(tmp_path):
+    path = tmp_path / 'mill.shdr'
+    adapter(path)
+    path.write_text(path.read_text().replace('X1actm', 'Ax7'))
+    axis = {'lead_mm': 10.0, 'position': {'column': 'Ax7', 'unit': 'mm'}}
+    mapping = make_map({'time': {'column': 'time', 'unit': 's'}, 'axes': {'x': axis}})
+    (rows,) = [rows for (rows,) in read_series(path, mapping).blocks()]
+    seconds = (rows.stamps - rows.stamps[0]) / 1e9
+    places = rows.columns['x.position'] * 10.0 / math.tau
+    np.testing.assert_allclose(places, 150.0 + 100.0 * np.sin(seconds / 8.0), atol=0.01)
 
 
 def test_the_table_that_changes_make_is_counted_before(tmp_path, refused, monkeypatch):
@@ -121,6 +159,6 @@ def test_the_table_that_changes_make_is_counted_before(tmp_path, refused, monkey
     lines = [f'2025-07-14T11:59:50.{row:03d}Z|{"XYZ"[row % 3]}act|{row}' for row in range(60)]
     path.write_text('\n'.join(lines) + '\n')
     monkeypatch.setattr(limits, 'SPARSE', 60 * 4 * limits.NUMBER_CELL)
-    assert read_shdr(path).shape == (60, 4)
+    assert read_shdr(path).frame.shape == (60, 4)
     monkeypatch.setattr(limits, 'SPARSE', 60 * 4 * limits.NUMBER_CELL - 1)
     refused('wide', source_of, path)
