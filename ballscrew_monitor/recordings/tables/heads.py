@@ -36,6 +36,7 @@ from ballscrew_monitor.recordings.tables.lines import BLANKS, cells_of_line, Lin
 from ballscrew_monitor.recordings.tables.names import base_of, read_name
 from ballscrew_monitor.recordings.tables.numerals import plain_numeral
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
+from ballscrew_monitor.recordings.tables.sections import END_OF_HEAD
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
     is_unit,
@@ -644,11 +645,18 @@ class _Above:
 
     def _names(self) -> tuple[list[str], bool]:
         """Return what the columns are called, and whether anything calls them so."""
-        by_their_place = (self._labelled, self._symbols, self._row_of_names)
-        by_their_form = (self._comment, self._numbered, self._below_each_other)
-        named = (find() for find in (*by_their_place, *by_their_form))
+        by_their_place = (self._below_end_of_head, self._labelled, self._symbols)
+        by_their_words = (self._row_of_names, self._comment)
+        by_their_form = (self._numbered, self._below_each_other)
+        named = (find() for find in (*by_their_place, *by_their_words, *by_their_form))
         names = next(filter(None, named), [])
         return names, bool(names)
+
+    def _below_end_of_head(self) -> list[str]:
+        """Return the row behind the line that ends the head of a file of LabVIEW."""
+        ends = [line.row for line, _ in self.lines if line.raw.startswith(END_OF_HEAD)]
+        rows = [row for line, row in self.wide if ends and line.row > ends[-1]]
+        return rows[0] if rows and not _is_of_numbers(rows[0]) else []
 
     def _labelled(self) -> list[str]:
         """Return the row that is labelled as names, or the longer symbols where these are few."""

@@ -34,6 +34,22 @@ def section(rows, names=WAVES, *, clock='11:59:56', step=STEP):
     return [*lines, '']
 
 
+@pytest.mark.parametrize(
+    'names', [['Untitled', 'Untitled 1'], ['Voltage_0', 'Voltage_1'], ['Dev1/ai0', 'Dev1/ai1']]
+)
+def test_columns_that_labview_named_are_those_of_a_map(names, tmp_path):
+    """The names stand behind the head, whatever they say, and above them X_Dimension says Time."""
+    path, lines = tmp_path / 'log.lvm', [*head(), *section(60, names)]
+    lines.insert(len(head()) + 1, '\t'.join(['X_Dimension', 'Time', 'Time']))
+    path.write_text('\n'.join(lines))
+    axis = {'lead_mm': 10.0, 'speed': {'column': names[0], 'unit': 'mm/s'}}
+    time = {'column': 'X_Value', 'unit': 's', 'epoch': '2025-07-14T00:00:00Z'}
+    series = read_series(path, make_map({'time': time, 'axes': {'x': axis}}))
+    (rows,) = [rows for (rows,) in series.blocks()]
+    true = 80.0 * np.sin(math.tau * STEP * np.arange(60))
+    np.testing.assert_allclose(rows.columns['x.speed'], true * math.tau / 10.0, atol=1e-4)
+
+
 @pytest.mark.parametrize('rows', [60, 3000])
 @pytest.mark.parametrize('end', ['\n', '\r\n'])
 def test_sections_of_one_head_are_runs_of_one_table(rows, end, tmp_path, says):
