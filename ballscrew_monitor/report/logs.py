@@ -21,6 +21,7 @@ NO_LOGS = (*SETTINGS, '.md', '.html', '.py', '.pdf', '.png', '.npz', '.active')
 BESIDE_SQLITE = ('.db3-wal', '.db3-shm', '.db3-journal')
 """Endings of what is read with the file of SQLite beside it."""
 MOST_NAMED = 5  # files that are left out, for one reason
+OF_ROS_1 = ('.bag',)
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
@@ -40,7 +41,7 @@ def find_logs(
     without any recording.
 
     """
-    logs: list[Path] = []
+    logs: dict[Path, Path] = {}  # links to one file are one recording
     for path in paths:
         held = _recordings(path, tables, out, is_log)
         if not held:
@@ -51,8 +52,9 @@ def find_logs(
                 f'{" or ".join(endings)}'
                 + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
-        logs += held
-    return list(dict.fromkeys(logs))
+        for log in held:
+            logs.setdefault(log.resolve(), log)
+    return [*logs.values()]
 
 
 def _recordings(
@@ -67,6 +69,7 @@ def _recordings(
         for recording in _recordings(child, tables, out, is_log)
     ]
     held = _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS)
+    held += filter(is_bag, _files(path, OF_ROS_1))  # which say how they are converted
     if is_log is not None:
         held += [
             file
@@ -122,9 +125,12 @@ def _others(folder: Path, logs: Sequence[Path], out: Path | None) -> Iterator[Pa
     """Yield the files below a folder that are no recordings, nor settings of any."""
     if not folder.is_dir():
         return
-    own = (*SETTINGS, *ENDINGS, *BESIDE_SQLITE, ACTIVE) if folder in logs else SETTINGS
+    found = {log.resolve() for log in logs}
+    is_log = folder.resolve() in found
+    own = (*SETTINGS, *ENDINGS, *BESIDE_SQLITE, ACTIVE) if is_log else SETTINGS
     for file in _files(folder, ('',)):
-        if file not in logs and not file.name.lower().endswith(own) and file.name[0] != '.':
+        is_own = file.name.startswith('.') or file.name.lower().endswith(own)
+        if not is_own and file.resolve() not in found:
             yield file
     for child in _folders(folder, out):
         yield from _others(child, logs, out)
@@ -170,12 +176,20 @@ def _stem(name: str) -> str:
 
 
 def _folders(folder: Path, out: Path | None) -> list[Path]:
-    """Return the folders in a folder that are not hidden, nor `out`."""
-    left = None if out is None else out.resolve()
+    """
+    Return the folders in a folder that are not hidden, nor `out`.
+
+    A link to what is in the folder, or to a folder that it is in, leads to nothing else.
+
+    """
+    left = {None if out is None else out.resolve(), *map(Path.resolve, [folder, *folder.parents])}
     return [
         path
         for path in _held(folder)
-        if path.is_dir() and not path.name.startswith('.') and path.resolve() != left
+        if path.is_dir()
+        and not path.name.startswith('.')
+        and path.resolve() not in left
+        and not (path.is_symlink() and path.resolve().is_relative_to(folder.resolve()))
     ]
 
 

@@ -50,6 +50,8 @@ OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 OF_LISTS = 'its cells are lists'
 CYCLE, COUNTERS = 'CycleTimeMs', ('CYCLE', 'HFProbeCounter')
 """Key of the time of a cycle, and signals that count cycles."""
+TRACE = 'SignalListHFData'
+"""Key of the signals in a trace of SINUMERIK."""
 STAMP = 'HFTimestamp'
 """Key of the count of the cycle of the row behind it."""
 HALF = 0.5  # row that a count may be off
@@ -62,7 +64,7 @@ def read_json(path: Path) -> Signals:
     if limits.is_deeper(content, limits.DEPTH):
         raise Unreadable(f'it nests deeper than {limits.DEPTH}')
     header = content.get('Header') if isinstance(content, dict) else None
-    if isinstance(header, dict) and 'SignalListHFData' in header:
+    if isinstance(header, dict) and TRACE in header:
         return _sinumerik_json(content)
     left_out, factors, more_rows = {}, '', 0
     content = _plain_table(content)
@@ -107,7 +109,7 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     """Return the fast signals of a data recorder: a row for each cycle of the control."""
     header = content['Header']
     parts: Any = content.get('Payload')
-    listed = header['SignalListHFData']
+    listed = header[TRACE]
     if not _are_all(dict, listed) or not all('Name' in signal for signal in listed):
         raise Unreadable('SignalListHFData of its Header must be a list of signals with a Name')
     if not _are_all(dict, parts) or not _are_all(list, [part.get('HFData', []) for part in parts]):

@@ -18,7 +18,7 @@ from pathlib import Path
 import re
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.tables import codings, foreign, heads
+from ballscrew_monitor.recordings.tables import codings, foreign, heads, json_layouts
 from ballscrew_monitor.recordings.tables.cell_units import plain_columns, plainly
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, Read, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
@@ -307,12 +307,19 @@ def is_log(path: Path) -> bool:
             return head.startswith(PARQUET)
         if kind := foreign.kind_of(head[:HEAD]):
             if kind in ('json', 'xml') and not is_packed and path.stat().st_size <= limits.TEXT:
-                return bool(foreign.read_signals(path, kind).frame.width)
+                return _holds_signals(path, kind) or json_layouts.TRACE.encode() in head
             return foreign.holds_numbers(head, kind, FEWEST)
         if codings.wide_coding(head):
             head = codings.text_of(head).encode()
         text = _Text.of(path, head, head.rstrip(codings.NUL))
         return heads.holds_numbers(_first_lines(text)[0], FEWEST)
+    return False
+
+
+def _holds_signals(path: Path, kind: str) -> bool:
+    """Return True if a file of a kind can be read and holds signals."""
+    with contextlib.suppress(InputError):
+        return bool(foreign.read_signals(path, kind).frame.width)
     return False
 
 

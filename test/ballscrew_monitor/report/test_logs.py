@@ -114,6 +114,39 @@ def test_what_is_named_twice_is_taken_once_and_nothing_is_refused(tmp_path, refu
     refused('import_one_guess', find_logs, [tmp_path])
 
 
+@pytest.mark.parametrize(
+    ('link', 'target'),
+    [
+        ('latest', 'run'),
+        ('up', '..'),
+        ('here', '.'),
+        ('run/cousin', '../other'),
+        ('b.csv', 'a.csv'),
+    ],
+)
+def test_links_lead_to_each_recording_once(link, target, tmp_path):
+    touch(*(tmp_path / 'logs' / name for name in ('a.csv', 'run/c.csv', 'other/d.csv')))
+    (tmp_path / 'logs' / 'other' / 'back').symlink_to('../run')
+    (tmp_path / 'logs' / link).symlink_to(target)
+    found = find_logs([tmp_path / 'logs'], tables=True)
+    assert sorted(path.resolve().name for path in found) == ['a.csv', 'c.csv', 'd.csv']
+    assert not left_out([tmp_path / 'logs'], found, tables=True)
+
+
+def test_a_link_to_a_folder_elsewhere_is_followed(tmp_path):
+    touch(tmp_path / 'disk' / 'a.csv')
+    (tmp_path / 'logs').mkdir()
+    (tmp_path / 'logs' / 'mill').symlink_to('../disk')
+    assert names(find_logs([tmp_path / 'logs'], tables=True), tmp_path) == ['logs/mill/a.csv']
+
+
+def test_a_bag_of_ros_1_is_found_to_say_how_it_is_converted(tmp_path):
+    (tmp_path / 'old.bag').write_bytes(b'#ROSBAG V2.0\n')
+    (tmp_path / 'notes.bag').write_text('two bags of grease')
+    touch(tmp_path / 'new' / 'a.mcap')
+    assert names(find_logs([tmp_path]), tmp_path) == ['old.bag', 'new']
+
+
 def test_tables_that_are_left_out_are_named(tmp_path):
     touch(tmp_path / 'a.mcap', *(tmp_path / f't{number}.csv' for number in range(7)))
     for path in tmp_path.glob('*.csv'):

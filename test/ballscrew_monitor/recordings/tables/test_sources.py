@@ -247,6 +247,15 @@ SMALL = {
     'settings': (json.dumps({f'setting {at}': at for at in range(40)}), False),
     'tools': ('<tools>' + '<tool length="1.5"/>' * 40 + '</tools>', False),
     'trace': ('<trace>' + '<rec time="0.5" f1="1.5"/>' * 40 + '</trace>', True),
+    'torn trace': (
+        json.dumps(
+            {
+                'Header': {'SignalListHFData': [{'Name': 'Cycle'}]},
+                'Payload': [{'HFData': [[1, 2]]}],
+            }
+        ),
+        True,  # of a machine: its fault is worth a sentence
+    ),
     'late': (
         json.dumps({'note': 'x' * limits.MEGA, 'samples': [{'t': t, 'v': v} for t, v in PLACES]}),
         True,
