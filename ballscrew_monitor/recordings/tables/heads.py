@@ -113,9 +113,9 @@ class Head:
     Names of the columns, how the cells are parted, and what stands above the first of them.
 
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
-    file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
-    `labelled` are the columns that the head gives no name of their own; without `named` it names
-    none. `properties` are those of the file by their words, `factors` a row that scales cells,
+    file. `symbols` are longer names, or the short ones where these repeat, `periods` [s] those
+    that columns state, NaN for none; `labelled` are the columns that the head gives no name of
+    their own; without `named` it names none. `properties` are those of the file by their words, `factors` a row that scales cells,
     `unclear_period` a line with a period that may be one of something else than rows, `machine`
     what is said of the machine, by the keys of `MACHINE`.
 
@@ -547,7 +547,7 @@ class _Above:
             for one, name in zip(told, names, strict=True)
             if property_of(name) in ('name', 'symbol')
         }
-        symbols = self._row('symbol')
+        symbols = self._row('name' if names[0] == self._row('symbol')[0] else 'symbol')
         properties = self._properties()
         periods = self._periods(told)
         period, row, unclear = self._period({*periods.values()})

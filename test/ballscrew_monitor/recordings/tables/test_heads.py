@@ -51,6 +51,18 @@ def test_names_stand_above_the_numbers_in_whatever_way(text, names, first):
     assert head.named == (names[0] != 'column 1')
 
 
+def test_names_that_repeat_say_of_longer_ones_what_these_are():
+    """As TwinCAT Scope writes two axes: short names of the quantities, long ones of the tags."""
+    rows = [
+        ['Name', 'ActVelo', 'ActTorque', 'Name', 'ActVelo', 'ActTorque'],
+        ['SymbolName', 'Axes.X.Vel', 'Axes.X.Tq', 'SymbolName', 'Axes.Y.Vel', 'Axes.Y.Tq'],
+        *[[str(at)] * 6 for at in range(5)],
+    ]
+    head = head_of('\n'.join(map('\t'.join, rows)))
+    assert [head.symbols[name] for name in head.names] == rows[0]
+    assert list(head.names)[1:3] == rows[1][1:3]
+
+
 @pytest.mark.parametrize(
     ('name', 'cell', 'differs'),
     [
