@@ -115,9 +115,9 @@ class Head:
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
     file. `symbols` are longer names, or the short ones where these repeat, `periods` [s] those
     that columns state, NaN for none; `labelled` are the columns that the head gives no name of
-    their own; without `named` it names none. `properties` are those of the file by their words, `factors` a row that scales cells,
-    `unclear_period` a line with a period that may be one of something else than rows, `machine`
-    what is said of the machine, by the keys of `MACHINE`.
+    their own; without `named` it names none. `properties` are those of the file by their words,
+    `factors` a row that scales cells, `unclear_period` a line with a period that may be one of
+    something else than rows, `machine` what is said of the machine, by the keys of `MACHINE`.
 
     """
 
