@@ -155,8 +155,8 @@ def _check_cycles(name: str, counts: Sequence[Any], places: Sequence[int]) -> No
         at = int(lost.argmax())
         raise Unreadable(
             f'{name} goes on by {steps[at]:g} from row {places[at] + 1} to row '
-            f'{places[at + 1] + 1} of its HFData, usually by {usual * rows[at]:g}: rows lack '
-            'there, save what is before and behind as files of their own'
+            f'{places[at + 1] + 1} of its HFData, usually by {usual * rows[at]:g}: rows '
+            'are missing there, save what is before and behind as files of their own'
         )
 
 

@@ -439,8 +439,8 @@ class _Part:
             raise InputError(f'{part._prefix}.unit is {found}, allowed are {", ".join(units)}')
         if not all(map(_is_number, numbers)) or not numbers[0]:
             raise InputError(
-                f'{part._prefix}: scale and offset are {numbers[0]!r} and {numbers[1]!r}, they '
-                'must be numbers, the scale not 0'
+                f'{part._prefix}: scale and offset are {_said(numbers[0])} and '
+                f'{_said(numbers[1])}, they must be numbers, the scale not 0'
             )
         if not name:
             return None

@@ -22,7 +22,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
     words_of,
     words_without_unit,
 )
-from ballscrew_monitor.recordings.words import listed, short
+from ballscrew_monitor.recordings.words import counted, listed, short
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -544,7 +544,9 @@ def left_out(left: Sequence[Named]) -> list[str]:
     notes = []
     spindle = sum(one.place == 'spindle' for one in left)
     if spindle:
-        notes.append(f'{spindle} columns are of the spindle, which is no ball-screw axis')
+        notes.append(
+            f'not used, as the spindle is no ball-screw axis: {counted(spindle, "column")} of it'
+        )
     others = [one.column for one in left if one.place != 'spindle']
     if others:
         notes.append(f'not used: {listed(others)}')
