@@ -8,8 +8,9 @@ at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and 
 over processor time, which other work on the machine changes little: judged alone, with the load
 out of the torque, with the speed out of positions, of the recording that a node makes of itself,
 and end to end as `ballscrew replay --out` does it, with table, page and judged bag; a CSV and a
-Parquet of the same signals, L seconds long, over their floor, which is reading by polars and the
-bare step; and how fast a CSV becomes a bag. The bare step over the same events, measured in turns
+Parquet of the same signals, L seconds long; and how fast a CSV becomes a bag. A floor is what the
+same data need at least: zstd and the walk over the records of a bag, or polars for a table, and
+the bare step. The bare step over the same events, measured in turns
 with the recording of a node, tells what reading that costs. Beside them the time of one Python
 call, measured in the same run, of a lookup all over the surface, and how large recordings of a
 node are.
@@ -17,7 +18,7 @@ node are.
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 import contextlib
 import os
 from pathlib import Path
@@ -30,6 +31,7 @@ from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes, read_chunk
 from ballscrew_monitor.recordings.bulk.events import joined, Notes
 from ballscrew_monitor.recordings.bulk.order import ordered_events
 from ballscrew_monitor.recordings.log_facts import parameters_of
@@ -168,20 +170,39 @@ def judge_table(path: Path) -> Iterator[object]:
     return replay_parts(log, parameters_of(log) or {}, states=False)
 
 
-def floor_of(path: Path) -> Callable[[], Iterable[object]]:
-    """Return what judges a table at least: polars reads it, and the step takes its events."""
-    log = TableLog(path, make_map(TABLE), unseen)
-    given = parameters_of(log) or {}
+def floor_of(
+    log: Bag | TableLog, given: Mapping[str, Any], read: Callable[[], object]
+) -> Callable[[], Iterable[object]]:
+    """Return what judges a recording at least: it is read, and the step takes its events."""
     axes, period = axes_for(log, given), nanoseconds(given['tick_period'])
     events = list(ordered_events(log, axes, period, Notes(), on_done=ignore))
 
     def run() -> Iterator[object]:
-        yield pl.read_csv(path) if path.suffix == '.csv' else pl.read_parquet(path)
+        yield read()
         judge = ManyJudge(axes_for(log, given)[0].monitor)
         for part in events:
             yield from judge.judge(part)
 
     return run
+
+
+def floor_of_bag(bag: Bag) -> Callable[[], Iterable[object]]:
+    """Return what judges a bag at least: chunks by zstd, their messages by the compiled walk."""
+
+    def read() -> None:
+        for file in bag.files:
+            with file.open('rb') as stream:
+                for place in chunk_indexes(stream, bag.topics)[0]:
+                    read_chunk(stream, place)
+
+    return floor_of(bag, values(0.1), read)
+
+
+def floor_of_table(path: Path) -> Callable[[], Iterable[object]]:
+    """Return what judges a table at least, which polars reads."""
+    log = TableLog(path, make_map(TABLE), unseen)
+    read = pl.read_csv if path.suffix == '.csv' else pl.read_parquet
+    return floor_of(log, parameters_of(log) or {}, lambda: read(path))
 
 
 def lookups(repeats: int) -> float:
@@ -216,6 +237,7 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
         Row('1 kHz, columns', 2000, quick, lambda: replay_parts(quick, values(0.1), states=False)),
+        Row('1 kHz, its floor', 0, quick, floor_of_bag(quick)),
         Row('1 kHz, states each 0.1 s', 0, quick, lambda: replay(quick, values(0.1))),
         Row('1 kHz, report, end to end', 150, quick, lambda: [report(quick, folder / 'report')]),
         Row('100 Hz, columns', 10000, long, lambda: replay_parts(long, values(0.1), states=False)),
@@ -229,9 +251,9 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
             lambda: replay_parts(quick, position, states=False),
         ),
         Row('1 kHz, CSV', 1000, text, lambda: judge_table(table)),
-        Row('1 kHz, CSV, its floor', 0, text, floor_of(table)),
+        Row('1 kHz, CSV, its floor', 0, text, floor_of_table(table)),
         Row('1 kHz, Parquet', 0, fast, lambda: judge_table(packed)),
-        Row('1 kHz, Parquet, its floor', 0, fast, floor_of(packed)),
+        Row('1 kHz, Parquet, its floor', 0, fast, floor_of_table(packed)),
         Row(
             '1 kHz, a CSV to a bag',
             0,
@@ -279,8 +301,11 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
         cost = costs[row.name] = spent(asked.repeats, row.run)
         each = 1e6 * cost / row.bag.topics['/joint_states'].count
         print(f'{row.name:28} {row.bag.duration / cost:12.0f} {row.aim or "":>6} {each:12.2f}')
-    ratio = costs['1 kHz, Parquet'] / costs['1 kHz, Parquet, its floor']
-    print(f'a Parquet takes {ratio:.2f} times its floor, aim 1.6')
+    for name, floor in (
+        ('1 kHz, columns', '1 kHz, its floor'),
+        ('1 kHz, Parquet', '1 kHz, Parquet, its floor'),
+    ):
+        print(f'{name}: {costs[name] / costs[floor]:.2f} times its floor, aim 1.6')
     call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
     print(f'one Python call takes {1e6 * call:.3f} us')
     print_recordings(folder, asked.seconds, rows[-1].bag, asked.repeats)
