@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 import statistics
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, NOW, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
@@ -102,19 +102,14 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
     return {group: float(level) + now for group, level, known in pairs if known}
 
 
-class Spread(NamedTuple):
-    """
-    What the logs of an axis say of its temperature slope and of its scatter and wander.
+Spread = tuple[Prior, frozenset[Any]]
+"""
+The prior of an axis by its own logs alone, and the groups in which it runs.
 
-    The slope [1/K] with its standard deviation by the logs alone, infinite where they say nothing,
-    and the likelihood of the pairs of the grid; `groups` are the places where the axis runs.
+Its temperature slope has an infinite standard deviation where the logs say nothing of it; pairs of
+the grid have their likelihood in place of weights.
 
-    """
-
-    slope: float
-    deviation: float
-    pairs: tuple[float, ...]
-    groups: frozenset[Any]
+"""
 
 
 def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
@@ -125,10 +120,11 @@ def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
     logs, _ = binned_logs(history)
     if len(logs.time) < FEWEST_LOGS + 2:
         return None
-    return _spread(logs, frozenset(history.groups), warm=history.warm)
+    return own_prior(logs, warm=history.warm), frozenset(history.groups)
 
 
-def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
+def own_prior(logs: Logs, *, warm: bool) -> Prior:
+    """Return what logs say by themselves; `warm`: the temperature was measured."""
     now = np.arange(len(logs.time)) >= len(logs.time) - now_of(logs.time)
     change = estimate(logs, ~now, now, warm=warm)
     alone = change.pairs / np.exp(GRID.prior)
@@ -136,22 +132,22 @@ def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
     variance = change.slope_deviation**2
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
     if information <= 0.0 or not warm:
-        return Spread(SLOPE, math.inf, pairs, groups)
+        return Prior(SLOPE, math.inf, pairs)
     slope = SLOPE + (change.slope - SLOPE) / variance / information
-    return Spread(slope, information**-0.5, pairs, groups)
+    return Prior(slope, information**-0.5, pairs)
 
 
 def priors(spreads: Mapping[str, Spread]) -> dict[str, Prior]:
     """Return the prior of each axis by the spreads of its peers; axes of one screw by name."""
     known = {}
-    for axis, own in spreads.items():
+    for axis, (_, own) in spreads.items():
         others = [spread for other, spread in spreads.items() if other != axis]
-        least = LEAST_COMMON * len(own.groups)
-        known[axis] = prior_of([peer for peer in others if len(own.groups & peer.groups) >= least])
+        least = LEAST_COMMON * len(own)
+        known[axis] = prior_of([peer for peer, groups in others if len(own & groups) >= least])
     return known
 
 
-def prior_of(peers: Sequence[Spread]) -> Prior:
+def prior_of(peers: Sequence[Prior]) -> Prior:
     """
     Return what the peers of an axis say of it, by empirical Bayes; the usual for less than two.
 
@@ -161,9 +157,9 @@ def prior_of(peers: Sequence[Spread]) -> Prior:
     """
     if len(peers) < FEWEST_PEERS:
         return USUAL
-    known = [peer for peer in peers if math.isfinite(peer.deviation)]
+    known = [peer for peer in peers if math.isfinite(peer.doubt)]
     apart = np.array([peer.slope for peer in known]) - SLOPE
-    noise = np.array([peer.deviation for peer in known]) ** 2
+    noise = np.array([peer.doubt for peer in known]) ** 2
     means, variances, likelihoods = [], [], []
     for share in OWN_SHARES:
         own, common = share * SLOPE_DOUBT**2, (1.0 - share) * SLOPE_DOUBT**2

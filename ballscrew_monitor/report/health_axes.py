@@ -108,13 +108,10 @@ def _priors(axes: Mapping[str, Inputs], workers: Workers) -> dict[str, dict[str,
     def report(outcome: TaskOutcome) -> None:
         if outcome.result is not None:
             plain = outcome.result['spread']
-            spread = Spread(
-                slope=plain['slope'],
-                deviation=math.inf if plain['deviation'] is None else plain['deviation'],
-                pairs=plain['pairs'],
-                groups=frozenset(map(tuple, plain['groups'])),
-            )
-            screws.setdefault(outcome.result['surface'], {})[outcome.name] = spread
+            doubt = math.inf if plain['doubt'] is None else plain['doubt']
+            own = Prior(plain['slope'], doubt, tuple(plain['pairs']))
+            axes_of_screw = screws.setdefault(outcome.result['surface'], {})
+            axes_of_screw[outcome.name] = own, frozenset(map(tuple, plain['groups']))
 
     run_mapped(spread_task, axes, workers, report, few=FEW)
     return {
@@ -135,7 +132,8 @@ def spread_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     spread = spread_of(cells, Surface.load(Path(surface)).lead)
     if spread is None:
         raise InputError('its logs are too few')
-    plain = to_json({**spread._asdict(), 'groups': sorted(map(tuple, spread.groups))})
+    own, groups = spread
+    plain = to_json({**own._asdict(), 'groups': sorted(map(tuple, groups))})
     return {'surface': surface, 'spread': plain}
 
 

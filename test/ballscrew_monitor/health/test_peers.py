@@ -10,11 +10,12 @@ from ballscrew_monitor.health.mixed import (
     GRID,
     Logs,
     MODEL_DOUBT,
+    Prior,
     SLOPE,
     SLOPE_DOUBT,
     USUAL,
 )
-from ballscrew_monitor.health.peers import _spread, prior_of, priors, Spread
+from ballscrew_monitor.health.peers import own_prior, prior_of, priors
 import numpy as np
 import pytest
 
@@ -63,7 +64,9 @@ def families():
             )
             for _ in range(6)
         ]
-        spreads = {str(at): _spread(logs, GROUPS, warm=True) for at, (logs, _) in enumerate(drawn)}
+        spreads = {
+            str(at): (own_prior(logs, warm=True), GROUPS) for at, (logs, _) in enumerate(drawn)
+        }
         for prior, (logs, change) in zip(priors(spreads).values(), drawn, strict=True):
             rows.append((change, *interval(logs, USUAL), *interval(logs, prior)))
     return np.array(rows)
@@ -80,42 +83,42 @@ def test_peers_narrow_the_interval_and_it_still_holds(families):
     assert np.mean((of_peers - change) ** 2) < 0.8 * np.mean((value - change) ** 2)
 
 
-def spread(slope=-0.014, deviation=0.001, pairs=None):
+def peer(slope=-0.014, doubt=0.001, pairs=None):
     usual = np.exp(GRID.prior)
     pairs = tuple((usual / usual.sum()).tolist()) if pairs is None else pairs
-    return Spread(slope, deviation, pairs, GROUPS)
+    return Prior(slope, doubt, pairs)
 
 
 def test_one_peer_says_nothing_and_many_alike_say_nearly_all():
-    assert prior_of([spread()]) == USUAL
-    three, many = prior_of([spread()] * 3), prior_of([spread()] * 30)
+    assert prior_of([peer()]) == USUAL
+    three, many = prior_of([peer()] * 3), prior_of([peer()] * 30)
     assert SLOPE > three.slope > many.slope > -0.014
     assert SLOPE_DOUBT > three.doubt > many.doubt
     assert many.slope == pytest.approx(-0.014, abs=3e-4)
 
 
 def test_peers_that_differ_leave_the_slope_open():
-    apart = prior_of([spread(-0.002), spread(-0.018), spread(-0.004), spread(-0.016)])
-    alike = prior_of([spread(-0.010)] * 4)
+    apart = prior_of([peer(-0.002), peer(-0.018), peer(-0.004), peer(-0.016)])
+    alike = prior_of([peer(-0.010)] * 4)
     assert apart.doubt > 1.5 * alike.doubt
     assert apart.slope == pytest.approx(SLOPE, abs=1e-6)
 
 
 def test_axes_without_a_temperature_share_their_scatter_alone():
-    prior = prior_of([spread(deviation=math.inf)] * 3)
+    prior = prior_of([peer(doubt=math.inf)] * 3)
     assert (prior.slope, prior.doubt) == (SLOPE, pytest.approx(SLOPE_DOUBT))
 
 
 def test_the_pairs_of_peers_outweigh_the_usual_ones():
     pairs = tuple(float(at == 5) for at in range(49))
-    prior = prior_of([spread(pairs=pairs)] * 4)
-    assert prior.pairs[5] == pytest.approx((4.0 + 2.0 * spread().pairs[5]) / 6.0)
+    prior = prior_of([peer(pairs=pairs)] * 4)
+    assert prior.pairs[5] == pytest.approx((4.0 + 2.0 * peer().pairs[5]) / 6.0)
     assert sum(prior.pairs) == pytest.approx(1.0)
     assert min(prior.pairs) > 0.0
 
 
 def test_another_programme_is_no_peer():
-    others = {name: spread()._replace(groups=frozenset({8, 9})) for name in 'abc'}
-    found = priors({'x': spread(), **others})
+    others = {name: (peer(), frozenset({8, 9})) for name in 'abc'}
+    found = priors({'x': (peer(), GROUPS), **others})
     assert found['x'] == USUAL
     assert found['a'] != USUAL
