@@ -3,7 +3,7 @@
 """An identification as a record, a page and the datasheets that hold what was found."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import combinations
 import math
 from typing import Any
@@ -62,15 +62,7 @@ def identification_record(
         'speed_range_rad_s': [float(speed.min()), float(speed.max())],
         'temperature_K': run.mean_temperature,
         'parameters': [
-            {
-                'name': estimate.name,
-                'unit': UNITS[estimate.name],
-                'value': estimate.value,
-                'low': estimate.low,
-                'high': estimate.high,
-                'standard_error': estimate.standard_error,
-                'reason': estimate.reason,
-            }
+            {'name': estimate.name, 'unit': UNITS[estimate.name], **asdict(estimate)}
             for estimate in fit.estimates
         ],
         'correlation': {'of': list(fit.correlated), 'matrix': fit.correlation.tolist()},
