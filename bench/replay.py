@@ -236,13 +236,13 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     text, fast = (TableLog(path, make_map(TABLE), unseen) for path in (table, packed))
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
-        Row('1 kHz, columns', 2000, quick, lambda: replay_parts(quick, values(0.1), states=False)),
+        Row('1 kHz, columns', 0, quick, lambda: replay_parts(quick, values(0.1), states=False)),
         Row('1 kHz, its floor', 0, quick, floor_of_bag(quick)),
         Row('1 kHz, states each 0.1 s', 0, quick, lambda: replay(quick, values(0.1))),
-        Row('1 kHz, report, end to end', 150, quick, lambda: [report(quick, folder / 'report')]),
-        Row('100 Hz, columns', 10000, long, lambda: replay_parts(long, values(0.1), states=False)),
+        Row('1 kHz, report, end to end', 200, quick, lambda: [report(quick, folder / 'report')]),
+        Row('100 Hz, columns', 8000, long, lambda: replay_parts(long, values(0.1), states=False)),
         Row(
-            '1 kHz, load of torque', 1000, quick, lambda: replay_parts(quick, torque, states=False)
+            '1 kHz, load of torque', 900, quick, lambda: replay_parts(quick, torque, states=False)
         ),
         Row(
             '1 kHz, speed of positions',
