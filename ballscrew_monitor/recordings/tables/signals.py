@@ -99,7 +99,11 @@ def signals_of(columns: Columns, beside: Columns, stated: Columns, **told: Any) 
     uneven = len({len(held) for name, held in columns.items() if read_name(name).kind}) > 1
     period = math.nan
     if len(periods) == 1 and not others and not uneven:
-        period = _period_of_rows(*next(iter(periods.items())), columns, stated)
+        name, only = next(iter(periods.items()))
+        group, _, last = name.rpartition('.')
+        beside_it = all(other.rpartition('.')[0] == group for other in columns)
+        is_plain = name in stated or (beside_it and last.lower() not in DOUBTFUL)
+        period = only if is_plain and only <= LONGEST_PERIOD else math.nan
     unclear = ', '.join(f'{name} = {numbers[name]:g}' for name in [*periods, *others])
     return Signals(
         frame=side_by_side(columns),
@@ -118,14 +122,6 @@ def _periods(numbers: Mapping[str, float]) -> dict[str, float]:
         for name, value in numbers.items()
         if last[name] in RATES | PERIODS and value > 0.0
     }
-
-
-def _period_of_rows(name: str, period: float, columns: Columns, stated: Columns) -> float:
-    """Return a period [s] if its name is plain and all columns stand beside it, else NaN."""
-    group, _, last = name.rpartition('.')
-    beside = all(one.rpartition('.')[0] == group for one in columns)
-    plain = name in stated or (beside and last.lower() not in DOUBTFUL)
-    return period if plain and period <= LONGEST_PERIOD else math.nan
 
 
 def stated_factors(content: Mapping[str, Any], before: str = '') -> Iterator[str]:

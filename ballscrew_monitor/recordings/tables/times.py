@@ -337,7 +337,8 @@ class Times:
 
         """
         runs, clocks = len(self.gate.runs), len(motion.gate.clocks)
-        is_told = len(self.gate.clocks) == clocks or not self._has_time_of(motion)
+        has_time_of = self.group.time_columns == motion.group.time_columns
+        is_told = len(self.gate.clocks) == clocks or not has_time_of
         if len(offsets) == runs and is_told:
             self._shifts = self.gate.shifts(offsets)
         elif len(offsets) > runs or not is_told:
@@ -355,9 +356,6 @@ class Times:
         self._late, self._steps = self._course.late, self._course.steps
         self._begin = self.first = self._course.begin
         self.last = self._course.end
-
-    def _has_time_of(self, motion: 'Times') -> bool:
-        return self.group.time_columns == motion.group.time_columns
 
     def since(self, begin: float) -> None:
         """Let stamps count from the first time of the log [s]; raises InputError for others."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of a log that may be inputs of axes or times: their names, marks and numbers."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 import math
 from pathlib import Path
 import re
@@ -244,7 +244,10 @@ class Columns:
             }
             self.source = self.source.marked(without)
             self._read(most, shown)
-        self._scale(self.inputs)
+        for one in self.inputs:
+            if one.column in self.data and one.scale != 1.0:
+                for numbers in (self.data, self.sampled, self.extremes):
+                    numbers[one.column] = numbers[one.column] * one.scale
 
     def _read(self, most: int, shown: Shown) -> None:
         """Read the columns that may be inputs or times, by the decimal sign that they show."""
@@ -281,13 +284,6 @@ class Columns:
         ]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
-
-    def _scale(self, inputs: Iterable[Named]) -> None:
-        """Bring inputs to their units."""
-        for one in [one for one in inputs if one.column in self.data]:
-            if one.scale != 1.0:
-                for numbers in (self.data, self.sampled, self.extremes):
-                    numbers[one.column] = numbers[one.column] * one.scale
 
     def _forget_texts(self) -> None:
         """Leave out columns without a number, and axes that so have no speed."""

@@ -32,23 +32,22 @@ class OwnTimes:
     """
 
     def __init__(self, draft: Draft, time: TimeColumn) -> None:
-        """Give each input its time, if the log has a column of one."""
+        """Give each input its time, if the log has a column of one: the nearest before it."""
         self._draft, self._log, self._time = draft, draft.log, time
         self.of_inputs: dict[str, str] = {}
         self._unclear: set[str] = set()
         self._idle: list[str] = []  # where one of several has no column behind it
-        if time.column is not None:
-            self._give(time.column)
-
-    def _give(self, time: Named) -> None:
-        """Give inputs of another group the column of their time: the nearest before them."""
-        owners = {one.column: self._is_own(time, one) for one in self._log.times}
+        if time.column is None:
+            return
+        owners = {one.column: self._is_own(time.column, one) for one in self._log.times}
         columns = {column: is_own for column, is_own in owners.items() if is_own is not None}
         held = self._log.source.names()
         behind = False
         for one in self._log.inputs:
             before = held[: held.index(one.column)]
-            column = next((each for each in reversed(before) if each in columns), time.column)
+            column = next(
+                (each for each in reversed(before) if each in columns), time.column.column
+            )
             behind |= not set(before) & set(columns)
             self.of_inputs[one.column] = column
             if not columns[column]:
