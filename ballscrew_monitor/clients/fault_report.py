@@ -137,14 +137,14 @@ def own_failures() -> list[str]:
 
 def versions() -> dict[str, Any]:
     """Return versions of what this runs with."""
-    found = {}
+    packages = {}
     for name in PACKAGES:
         with contextlib.suppress(metadata.PackageNotFoundError):
-            found[name] = metadata.version(name)
+            packages[name] = metadata.version(name)
     return {
         'python': platform.python_version(),
         'system': f'{platform.system()} {platform.machine()}',
-        'packages': found,
+        'packages': packages,
         'settings': {name: os.environ[name] for name in SETTINGS if name in os.environ},
     }
 

@@ -66,8 +66,8 @@ FieldReader = Callable[[object], float | OtherJoints | TooShort]
 class _Absent(Exception):
     """The message does not hold what a step asks for."""
 
-    def __init__(self, found: OtherJoints | TooShort) -> None:
-        self.found = found
+    def __init__(self, absence: OtherJoints | TooShort) -> None:
+        self.absence = absence
 
 
 MessageClass = Any
@@ -155,7 +155,7 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
             for step in steps:
                 value = step(value)
         except _Absent as absent:
-            return absent.found
+            return absent.absence
         return float(value)
 
     return read

@@ -283,10 +283,10 @@ def refusal_text(
     return why.fault.detail.format(first=first, second=second, most=most, name=name, unit=unit)
 
 
-def short_text(found: TooShort) -> str:
+def short_text(short: TooShort) -> str:
     """Return why an array gives no number, and the cure."""
-    holds = f'has {found.length} elements and no [{found.key}]' if found.length else 'is empty'
-    return f'{found.array} {holds} in its messages: let the source fill it, or read another field'
+    holds = f'has {short.length} elements and no [{short.key}]' if short.length else 'is empty'
+    return f'{short.array} {holds} in its messages: let the source fill it, or read another field'
 
 
 def ordered(

@@ -310,8 +310,8 @@ class Monitor:
 
     def kept(self, now: int) -> AxisRecord:
         """Return what is to be kept over a restart at `now` [ns] of the clock of the node."""
-        told = self.ending, self.shelving, within(now), self.usual
-        return AxisRecord.of(self._settings.axis, self.memory, *told)
+        beside = self.ending, self.shelving, within(now), self.usual
+        return AxisRecord.of(self._settings.axis, self.memory, *beside)
 
     def take_up(self, kept: AxisRecord, now: int) -> None:
         """

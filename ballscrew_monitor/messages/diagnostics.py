@@ -120,10 +120,10 @@ def usual_of(status: DiagnosticStatus) -> frozenset[int]:
     return frozenset(int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal())
 
 
-def _say(status: DiagnosticStatus, said: StatusSummary) -> None:
+def _say(status: DiagnosticStatus, summary: StatusSummary) -> None:
     """Let a status say something; its code is its first value."""
-    status.level, status.message = said.level, said.message
-    status.values = [*key_values([('Code', int(said.code))]), *status.values[1:]]
+    status.level, status.message = summary.level, summary.message
+    status.values = [*key_values([('Code', int(summary.code))]), *status.values[1:]]
 
 
 def of_folder(node: str, problem: str) -> DiagnosticStatus:

@@ -94,7 +94,7 @@ def findings(
     surroundings: Surroundings, inputs: Iterable[InputFacts], seconds: float
 ) -> list[str]:
     """Return a sentence for all that is wrong, after listening for `seconds` [s]."""
-    inputs, around, found = tuple(inputs), surroundings, []
+    inputs, around, sentences = tuple(inputs), surroundings, []
     if not around.nodes:
         cure = 'start the machine, or set ROS_DOMAIN_ID to its domain'
         if around.domains:
@@ -107,13 +107,13 @@ def findings(
         elif around.discovery in ('LOCALHOST', 'OFF'):
             variable = f'ROS_AUTOMATIC_DISCOVERY_RANGE={around.discovery}'
             cure = f'{variable} hides other machines, set it to SUBNET'
-        found.append(f'nobody else is seen in ROS domain {around.domain}: {cure}')
+        sentences.append(f'nobody else is seen in ROS domain {around.domain}: {cure}')
     if around.use_sim_time and '/clock' not in around.topics:
-        found.append(
+        sentences.append(
             'use_sim_time is true and nobody publishes /clock: play /clock, or set it to false'
         )
     for facts in inputs:
-        found += _of_input(facts, around, seconds)
+        sentences += _of_input(facts, around, seconds)
     rates = [
         facts.heard.status.rate
         for facts in inputs
@@ -121,11 +121,11 @@ def findings(
     ]
     total = math.fsum(rate for rate in rates if math.isfinite(rate))
     if total > SAFE_RATE:
-        found.append(
+        sentences.append(
             f'speed and load come {total:.0f} times a second in all, safe are {SAFE_RATE:g}: '
             'lower their rates, or give some axes a node of their own'
         )
-    return found
+    return sentences
 
 
 def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[str]:

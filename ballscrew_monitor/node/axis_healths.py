@@ -165,7 +165,7 @@ class AxisHealths:
             keeper=self._keepers[name],
             axis=name,
             now=self._now if now is None else now,
-            found=gatherer.hand_over(publisher.surface, rows_end=rows_end),
+            collected=gatherer.hand_over(publisher.surface, rows_end=rows_end),
             surface=publisher.surface,
             settings=HealthSettings(
                 limits=publisher.settings.limits,
@@ -177,7 +177,7 @@ class AxisHealths:
         )
         taken = self._worker.put(job)
         if not taken:
-            gatherer.give_back(job.found)
+            gatherer.give_back(job.collected)
         return taken
 
     def _speak(self) -> None:

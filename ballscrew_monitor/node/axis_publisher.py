@@ -222,11 +222,11 @@ class AxisPublisher:
 
     def restore(self, *, late: bool) -> str:
         """Take up corrections of before; return what became of them, if there are any."""
-        found = self._kept.state.recall(Corrections(self.name), late=late)
-        kept = found.read_solves()
+        record = self._kept.state.recall(Corrections(self.name), late=late)
+        kept = record.read_solves()
         if not kept:
             return ''
-        if found.surface != self.surface.base_sha256:
+        if record.surface != self.surface.base_sha256:
             return f'{len(kept)} kept corrections are of another surface and not used'
         try:
             surface = corrected(self.surface, kept)

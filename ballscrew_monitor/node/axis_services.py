@@ -103,7 +103,8 @@ class AxisServices:
         """Swap the surfaces for the files as they are now, if all of them verify."""
         surfaces = {name: self._load(publisher) for name, publisher in publishers.items()}
         sentences = [
-            one.guarded('a reload', one.reload, surfaces[name]) for name, one in publishers.items()
+            publisher.guarded('a reload', publisher.reload, surfaces[name])
+            for name, publisher in publishers.items()
         ]
         return ', '.join(
             filter(None, (f'reloaded the surface of {_names(publishers)}', *sentences))

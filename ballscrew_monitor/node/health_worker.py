@@ -78,20 +78,20 @@ class Gatherer:
         if not self.defect:
             self._add(self._guarded(self._collector.finish, rows_end=rows_end))
             self._collector.use_surface(surface)
-        found = Collected(list(self._stretches), self._bins)
+        collected = Collected(list(self._stretches), self._bins)
         self._stretches.clear()
         self._bins = []
-        return found
+        return collected
 
-    def give_back(self, found: Collected) -> None:
+    def give_back(self, collected: Collected) -> None:
         """Let what could not be handed over wait."""
-        self._stretches.extendleft(reversed(found.stretches))
-        self._bins = merged_bins([*found.bins, *self._bins])
+        self._stretches.extendleft(reversed(collected.stretches))
+        self._bins = merged_bins([*collected.bins, *self._bins])
 
-    def _add(self, found: Collected | None) -> None:
-        if found is not None:
-            self._stretches += found.stretches
-            self._bins += found.bins
+    def _add(self, collected: Collected | None) -> None:
+        if collected is not None:
+            self._stretches += collected.stretches
+            self._bins += collected.bins
 
     def _guarded(self, call: Callable[..., Collected | None], *args: Any, **named: Any) -> Any:
         """Return what a call returns; the judgement goes on if it fails, and no more is taken."""
@@ -109,7 +109,7 @@ class Job:
     keeper: HealthKeeper
     axis: str
     now: int
-    found: Collected
+    collected: Collected
     surface: Surface
     settings: HealthSettings
     policy: WarningPolicy
@@ -161,7 +161,7 @@ class HealthWorker:
                 break
             try:
                 today = day_of(job.now)
-                job.keeper.gather(job.found, today)
+                job.keeper.gather(job.collected, today)
                 self.take_store()
                 job.keeper.keep(today)
                 if job.assesses and not self._ending:

@@ -75,7 +75,7 @@ class Heartbeat:
     def others(self) -> list[str]:
         """Return the hosts of other nodes of this name that are there now."""
         last = time.monotonic() - FORGOTTEN
-        self._others = {key: one for key, one in self._others.items() if one[1] > last}
+        self._others = {key: other for key, other in self._others.items() if other[1] > last}
         return sorted(host for host, _ in self._others.values())
 
     def _hear(self, instance: KeyValue) -> None:

@@ -402,7 +402,7 @@ class Intake(Waitable):
             self._stepped(step, now)
 
     def _hand_over_each(self, heard: Sequence[Heard]) -> None:
-        turn = ordered([event for one in heard for event in self._judged(one)])
+        turn = ordered([event for each in heard for event in self._judged(each)])
         self._recorder.hear(heard)
         self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
         self._recorder.flush()  # whatever becomes of the node with these events
@@ -487,12 +487,12 @@ def _events(
     events: list[AxisEvent] = []
     for reader, (axis, source) in enumerate(arrival.topic.readers):
         limit = axis.max_future + reading.ahead
-        told: dict[str, Any] = {'now': now, 'max_future': limit, 'lost': lost}
+        options: dict[str, Any] = {'now': now, 'max_future': limit, 'lost': lost}
         try:
-            event = arrival.read(reader, **told)
+            event = arrival.read(reader, **options)
         except Exception:  # whatever it is: the guard takes it for the axis, with its place
             place = f'the {source.source.name.lower()} that arrived at {now} ns'
-            event = guard(axis, place, arrival.read, reader, **told)
+            event = guard(axis, place, arrival.read, reader, **options)
         several = reading.several and axis.one_source
         if several and (axis.name, source.source) in reading.several:
             if isinstance(event, InputSample):

@@ -120,7 +120,7 @@ class RestartState:
         if self.folder is None:
             return 'state_dir is empty'
         kept = self._latest | by_key([corrections])
-        size = sum(len(one.solves) for (kind, _), one in kept.items() if kind is Corrections)
+        size = sum(len(record.solves) for (kind, _), record in kept.items() if kind is Corrections)
         if size * SHARE > self.limit:
             self._refused[corrections.axis] = at_limit(self.folder, self.limit)
             return self._refused[corrections.axis]

@@ -51,7 +51,7 @@ class _Goal:
     row: Row  # of the point
     job: Job
     handle: ServerGoalHandle | None = None
-    told: float = -math.inf  # when feedback was last sent [s]
+    sent: float = -math.inf  # when feedback was last sent [s]
 
 
 class _Server(ActionServer):
@@ -158,9 +158,9 @@ class SolveServer:
 
     def _tell(self, goal: _Goal, now: float) -> None:
         """Send feedback, if it is time."""
-        if goal.handle is None or now - goal.told < FEEDBACK_PERIOD:
+        if goal.handle is None or now - goal.sent < FEEDBACK_PERIOD:
             return
-        goal.told = now
+        goal.sent = now
         message = feedback_message(goal.job.step, goal.row)
         goal.handle.publish_feedback(message)
 

@@ -61,8 +61,8 @@ class Arrival:
         """Return what the reader of this number in the topic takes; see `Input.read`."""
         source = self.topic.readers[reader][1]
         field = self.topic.field(reader) if self._message is UNREAD else None
-        if field is not None and (found := field.find(self.data)):
-            return source.sample(*found, now=now, max_future=max_future, lost=lost)
+        if field is not None and (numbers := field.find(self.data)):
+            return source.sample(*numbers, now=now, max_future=max_future, lost=lost)
         return source.read(self.message, now=now, max_future=max_future, lost=lost)
 
 

@@ -96,7 +96,7 @@ class _Slots:
                 topic.count((axis.name, source.source), NO_NUMBER, 0)
 
 
-class _Found(NamedTuple):
+class _Plain(NamedTuple):
     """Numbers of slots in messages, the stamps of these, their arrivals, and losses before."""
 
     message: NDArray[np.intp]
@@ -121,16 +121,16 @@ class TurnReader:
     def turn(self, burst: Burst, reading: Reading) -> Turn:
         """Return the events of messages in the order of judging."""
         slots = self._slots_of(burst.topics, reading.several)
-        found, odd = _find(burst, slots, reading.ahead)
-        events = _samples(found, slots)
+        plain, odd = _find(burst, slots, reading.ahead)
+        events = _samples(plain, slots)
         for at in np.flatnonzero(events['kind'] == REFUSAL).tolist():
-            _, slot, value, stamp, now, missing, most_ahead = (part[at].item() for part in found)
+            _, slot, value, stamp, now, missing, most_ahead = (part[at].item() for part in plain)
             lost, source = None if missing == NOT_KNOWN else missing, slots.slots[slot][1]
             events[at] = _record(
                 source.sample(value, stamp, now=now, max_future=most_ahead, lost=lost)
             )
         axes = np.array([self._numbers[axis.name] for axis, *_ in slots.slots], np.int64)
-        numbers, joints = axes[found.slot], dict[int, OtherJoints]()
+        numbers, joints = axes[plain.slot], dict[int, OtherJoints]()
         if len(odd):  # messages that are read by themselves
             read = [
                 (at, axis, event)
@@ -146,7 +146,7 @@ class TurnReader:
             others = np.array([self._numbers[axis.name] for _, axis, _ in read], np.int64)
             numbers = np.concatenate((numbers, others))
             places = np.array([at for at, _, _ in read], np.intp)
-            in_turn = np.argsort(np.concatenate((found.message, places)), kind='stable')
+            in_turn = np.argsort(np.concatenate((plain.message, places)), kind='stable')
             events, numbers = some(events, in_turn), numbers[in_turn]
             joints = _moved(joints, in_turn)
         order = _order(events)
@@ -163,7 +163,7 @@ class TurnReader:
         return self._slots
 
 
-def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.intp]]:
+def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Plain, NDArray[np.intp]]:
     """Return what the messages have at the slots, but for odd ones, which come beside it."""
     counts = slots.counts[burst.topic]
     message = np.repeat(np.arange(len(counts)), counts)
@@ -171,7 +171,7 @@ def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.i
     slot = slots.begins[burst.topic[message]] + within
     is_plain, number, stamp = slots.ways.walk(burst.data, burst.place[message], slot)
     most_ahead = np.array([axis.max_future + ahead for axis, *_ in slots.slots], np.int64)
-    found = _Found(
+    plain = _Plain(
         message=message,
         slot=slot,
         number=number,
@@ -185,13 +185,13 @@ def _find(burst: Burst, slots: _Slots, ahead: int) -> tuple[_Found, NDArray[np.i
     odd = np.flatnonzero(is_odd)
     if len(odd):
         kept = ~is_odd[message]
-        found = _Found(*(column[kept] for column in found))
-    return found, odd
+        plain = _Plain(*(column[kept] for column in plain))
+    return plain, odd
 
 
-def _samples(found: _Found, slots: _Slots) -> Events:
-    """Return the samples of what was found; what gives none is a REFUSAL without its reason."""
-    _, slot, number, stamp, now, lost, most_ahead = found
+def _samples(plain: _Plain, slots: _Slots) -> Events:
+    """Return the samples of plain messages; what gives none is a REFUSAL without its reason."""
+    _, slot, number, stamp, now, lost, most_ahead = plain
     with np.errstate(invalid='ignore', over='ignore'):
         value = number * slots.factor[slot] + slots.shift[slot]
     early = (now != 0) & (stamp - now > most_ahead)

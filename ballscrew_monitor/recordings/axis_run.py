@@ -144,7 +144,7 @@ class AxisRun:
                 place = int(judged.places[at])
                 self._hear_others(notes, place)
                 log_time = int(events['log_time'][place])
-                yield from ((place, one) for one in self._state(log_time, row, states=states))
+                yield from ((place, state) for state in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
                 yield AxisRows(self.axis.name, judged.rows, len(self._runs))

@@ -79,9 +79,9 @@ class Bag:
         files, custom, counts = manifest(self.path, salvage=salvage)
         self._is_split = len(files) > 1
         self.storages: Sequence[Storage] = [
-            one for one in map(self._open, files) if one is not None
+            storage for storage in map(self._open, files) if storage is not None
         ]
-        self.files = [one.file for one in self.storages]
+        self.files = [storage.file for storage in self.storages]
         self.topics: dict[str, TopicInfo] = {}
         for storage in self.storages:
             for name, info in storage.topics.items():
@@ -98,7 +98,7 @@ class Bag:
         self.metadata = self._own_metadata() | custom
         self.storages, disbelief = with_believed_log_times(self.path, self.storages)
         self.remarks += filter(None, [disbelief])
-        spans = [one.span for one in self.storages if one.span[1]]
+        spans = [storage.span for storage in self.storages if storage.span[1]]
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
         self.promised: Mapping[str, int] = counts
@@ -167,10 +167,10 @@ class Bag:
         wanted = set(self.topics if topics is None else topics)
         with contextlib.ExitStack() as stack:
             streams = [
-                stack.enter_context(contextlib.closing(one.messages(wanted)))
-                for one in self.storages
+                stack.enter_context(contextlib.closing(storage.messages(wanted)))
+                for storage in self.storages
             ]
-            yield from map(whole, heapq.merge(*streams, key=lambda one: one.log_time))
+            yield from map(whole, heapq.merge(*streams, key=lambda message: message.log_time))
 
     def _open(self, file: Path) -> Storage | None:
         """Return an opened file; None for one that is lost, if that is allowed."""
@@ -237,15 +237,15 @@ class Bag:
         return metadata
 
 
-def _objection(found: TopicInfo, type_name: str) -> str:
+def _objection(info: TopicInfo, type_name: str) -> str:
     """Return what is wrong with a topic that must be of a type, nothing if it is right."""
-    if found.encoding != 'cdr':
-        return other_encoding(found.encoding)
-    if not found.type_name:
+    if info.encoding != 'cdr':
+        return other_encoding(info.encoding)
+    if not info.type_name:
         return 'states no type: its schema is missing'
-    if found.type_name != type_name:
-        return f'is of type {found.type_name}, it must be {type_name}'
-    return '' if found.count else 'holds no message, at least one is needed'
+    if info.type_name != type_name:
+        return f'is of type {info.type_name}, it must be {type_name}'
+    return '' if info.count else 'holds no message, at least one is needed'
 
 
 def other_encoding(encoding: str) -> str:

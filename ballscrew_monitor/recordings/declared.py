@@ -56,16 +56,16 @@ def plain(record: Any) -> Any:
 
     """
     if dataclasses.is_dataclass(record):
-        made: dict[str, Any] = {}
+        content: dict[str, Any] = {}
         for key, spec in keys(record).items():
             value = getattr(record, spec.name)
-            made[key] = spec.metadata.get('form', plain)(value)
+            content[key] = spec.metadata.get('form', plain)(value)
             if spec.metadata.get('because') and not _is_known(value):
-                made[f'{key}_reason'] = getattr(record, spec.metadata['because'])
-        return made
+                content[f'{key}_reason'] = getattr(record, spec.metadata['because'])
+        return content
     if isinstance(record, Mapping):
         return {_name(key): plain(value) for key, value in record.items()}
-    return [plain(one) for one in record] if isinstance(record, list | tuple) else record
+    return [plain(part) for part in record] if isinstance(record, list | tuple) else record
 
 
 def _is_known(value: Any) -> bool:

@@ -97,10 +97,10 @@ def packed(
     for name in OF_REFUSAL:
         data.put(events[name][refusal])
     named = events['note'][refusal]
-    numbers = [one for one in dict.fromkeys(named.tolist()) if one in texts]
-    places = {one: place for place, one in enumerate(numbers)}
-    data.put(np.array([places.get(one, NOT_KNOWN) for one in named.tolist()], np.int16))
-    data.put_texts([texts[one] for one in numbers])
+    numbers = [note for note in dict.fromkeys(named.tolist()) if note in texts]
+    places = {note: place for place, note in enumerate(numbers)}
+    data.put(np.array([places.get(note, NOT_KNOWN) for note in named.tolist()], np.int16))
+    data.put_texts([texts[note] for note in numbers])
     return ENCAPSULATION + bytes(data.data)
 
 
@@ -266,10 +266,10 @@ class _Reader:
         return columns
 
     def texts(self) -> list[str]:
-        found = []
+        texts = []
         for _ in range(self._count()):
             length = self._count()
             begin, end = self.place, self.place + length
-            found.append(bytes(self._data[slice(begin, end - 1)]).decode())
+            texts.append(bytes(self._data[slice(begin, end - 1)]).decode())
             self.place = end
-        return found
+        return texts

@@ -89,26 +89,29 @@ class ChosenValues:
     """
     Every parameter that a bag is to be judged with, and in words whose they are.
 
-    `said` names those that somebody gave a value; the others stand at their defaults. `is_given`:
-    a person gave them for this bag; `is_nominal`: neither a person nor the bag gave any.
+    `stated` names those that somebody gave a value; the others stand at their defaults.
+    `is_given`: a person gave them for this bag; `is_nominal`: neither a person nor the bag gave
+    any.
 
     """
 
     values: dict[str, Any]
     origin: str
-    said: frozenset[str] = frozenset()
+    stated: frozenset[str] = frozenset()
     is_given: bool = False
     is_nominal: bool = False
 
 
-def grouped(said: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
+def grouped(sentences: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
     """Return what is said of axes: first of all of them, then of axes of which the same is."""
-    first = next(iter(said.values()), [])
-    common = [one for one in first if all(one in own for own in said.values())]
+    first = next(iter(sentences.values()), [])
+    common = [sentence for sentence in first if all(sentence in own for own in sentences.values())]
     groups: dict[tuple[str, ...], list[str]] = {}
-    for axis, own in said.items():
-        groups.setdefault(tuple(one for one in own if one not in common), []).append(axis)
-    whole = 'all axes' if len(said) > 1 else ''.join(f'axis {axis}' for axis in said)
+    for axis, own in sentences.items():
+        groups.setdefault(
+            tuple(sentence for sentence in own if sentence not in common), []
+        ).append(axis)
+    whole = 'all axes' if len(sentences) > 1 else ''.join(f'axis {axis}' for axis in sentences)
     groups_of_axes = [(whole, common)] if common else []
     for rest, axes in groups.items():
         if rest:
@@ -150,24 +153,24 @@ def values_for(bag: Bag, given: Path | None, nominal: Path) -> ChosenValues:
     """Return the parameters to judge a bag with: those given, its own, or the nominal ones."""
     if given is not None:
         values = parameters.read_file(given)
-        said = parameters.names_in_file(given)
-        return ChosenValues(values=values, origin=str(given), said=said, is_given=True)
+        stated = parameters.names_in_file(given)
+        return ChosenValues(values=values, origin=str(given), stated=stated, is_given=True)
     own = parameters_of(bag)
     if own is not None:
-        said = parameters.names_in_text(bag.metadata[f'{PREFIX}parameters'], f'bag {bag.path}')
-        return ChosenValues(values=own, origin=f'those of {bag.path}', said=said)
+        stated = parameters.names_in_text(bag.metadata[f'{PREFIX}parameters'], f'bag {bag.path}')
+        return ChosenValues(values=own, origin=f'those of {bag.path}', stated=stated)
     if events_topic(bag):
         values = recorded_values(bag)
         origin = f'those that the node recorded in {bag.path}'
-        return ChosenValues(values=values, origin=origin, said=_not_default(values))
+        return ChosenValues(values=values, origin=origin, stated=_not_default(values))
     values = parameters.read_file(nominal)
     return ChosenValues(values=values, origin=f'{nominal}, the nominal ones', is_nominal=True)
 
 
-def parameters_text(values: Mapping[str, Any], said: Collection[str] = ()) -> str:
-    """Return the text of a ROS parameter file: what is not at its default, and what was `said`."""
-    told = _not_default(values) | set(said)
-    return _parameters_text({name: value for name, value in values.items() if name in told})
+def parameters_text(values: Mapping[str, Any], stated: Collection[str] = ()) -> str:
+    """Return the text of a ROS parameter file: what is not at its default, or `stated`."""
+    shown = _not_default(values) | set(stated)
+    return _parameters_text({name: value for name, value in values.items() if name in shown})
 
 
 def _not_default(values: Mapping[str, Any]) -> frozenset[str]:

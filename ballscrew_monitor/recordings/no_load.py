@@ -121,24 +121,24 @@ def largest(bag: Bag, channels: Sequence[OpenInput]) -> dict[Source, float]:
 def _read(bag: Bag, channels: Sequence[OpenInput]) -> tuple[dict[Source, Series], int]:
     """Return the samples of every source in the order of their stamps, and how many were bad."""
     inputs = [_input(bag, channel) for channel in channels]
-    bag.require({one.topic: one.type_name for one in inputs})
-    samples: dict[Source, list[tuple[int, float]]] = {one.source: [] for one in inputs}
+    bag.require({source.topic: source.type_name for source in inputs})
+    samples: dict[Source, list[tuple[int, float]]] = {source.source: [] for source in inputs}
     refused = 0
-    for message in bag.messages({one.topic for one in inputs}):
-        readers = [one for one in inputs if one.topic == message.topic]
+    for message in bag.messages({source.topic for source in inputs}):
+        readers = [source for source in inputs if source.topic == message.topic]
         decoded = decode(bag, message, readers[0].message_type)
         refused += decoded is None
-        for one in readers if decoded is not None else ():
-            read = one.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)
+        for source in readers if decoded is not None else ():
+            read = source.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)
             if isinstance(read, InputSample):
-                samples[one.source].append((read.stamp - bag.start_time, read.value))
+                samples[source.source].append((read.stamp - bag.start_time, read.value))
             else:
                 refused += read.why is not Why.OTHER_JOINTS
-    for one, channel in zip(inputs, channels, strict=True):
-        if not samples[one.source]:
+    for source, channel in zip(inputs, channels, strict=True):
+        if not samples[source.source]:
             raise InputError(
-                f'bag {bag.path}: no message of {one.topic} holds {channel.field}, '
-                f'at least one must{named_instead(bag, one)}'
+                f'bag {bag.path}: no message of {source.topic} holds {channel.field}, '
+                f'at least one must{named_instead(bag, source)}'
             )
     return {source: _series(pairs) for source, pairs in samples.items()}, refused
 
@@ -178,7 +178,7 @@ def _is_steady(time: Array, speed: Array) -> bool:
 def _bins(windows: list[Window]) -> Iterator[list[Window]]:
     """Yield groups of windows of one direction whose speeds differ by less than the width."""
     group: list[Window] = []
-    for window in sorted(windows, key=lambda one: (one[0] < 0, abs(one[0]))):
+    for window in sorted(windows, key=lambda window: (window[0] < 0, abs(window[0]))):
         if group and not 0 < window[0] / group[0][0] <= 1 + BIN:
             yield group
             group = []

@@ -270,7 +270,7 @@ class Following:
         complaints = []
         for name, counts in self._last.items():
             where = name.removesuffix(PART)
-            for source in (one.removesuffix(TAKEN) for one in counts if one.endswith(TAKEN)):
+            for source in (topic.removesuffix(TAKEN) for topic in counts if topic.endswith(TAKEN)):
                 taken = self._gained(name, source + TAKEN)
                 if not taken:  # it listens to something else
                     continue
@@ -352,7 +352,7 @@ def playback(
                 known = {
                     (axis, source): absolute(values[f'{axis}.{source}.topic'])
                     for axis in values['axes']
-                    for source in (one.name.lower() for one in Source)
+                    for source in (source.name.lower() for source in Source)
                 }
             following = None if DIAGNOSTICS in topics else Following(node, known)
             code = _play(player, topics, patience, stop, loop, following)
@@ -388,10 +388,10 @@ def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
     for topic, reason in reasons.items():
         if reason:
             print(printable(f'not played: {topic}, {reason}'), flush=True)
-    found = [topic for topic, reason in reasons.items() if not reason]
-    if not found:
+    sent = [topic for topic, reason in reasons.items() if not reason]
+    if not sent:
         raise InputError(f'bag {bag.path}: no topic can be played')
-    return found
+    return sent
 
 
 def _problem(bag: Bag, topic: str) -> str:

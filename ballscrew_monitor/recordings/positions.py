@@ -71,7 +71,7 @@ def by_position(bag: Bag, values: Mapping[str, Any]) -> dict[str, tuple[str, str
     This is so where the velocity is 0 or missing throughout a bag, and the position moves.
 
     """
-    found = {}
+    positions = {}
     values = with_types(values, bag.types)
     for axis in values['axes']:
         topic = absolute(values[f'{axis}.speed.topic'])
@@ -80,14 +80,14 @@ def by_position(bag: Bag, values: Mapping[str, Any]) -> dict[str, tuple[str, str
             continue
         with contextlib.suppress(InputError):  # the judgement says what is wrong
             built = build_axis(axis, values)
-            speed = next(one for one in built.inputs if one.source is Source.SPEED)
+            speed = next(source for source in built.inputs if source.source is Source.SPEED)
             position = _input(bag, axis, values, built.surface.lead)
             if position is None or any(part.any() for part in _numbers(bag, built, speed)):
                 continue
             parts = list(_numbers(bag, built, position))
             if parts and np.ptp([(part.min(), part.max()) for part in parts]) > MOVED:
-                found[axis] = beside
-    return found
+                positions[axis] = beside
+    return positions
 
 
 def still_speed(axis: str, velocity: str, position: str, unit: str) -> str:
@@ -99,9 +99,9 @@ def still_speed(axis: str, velocity: str, position: str, unit: str) -> str:
     )
 
 
-def _numbers(bag: Bag, built: Axis, one: Input) -> Iterator[NDArray[np.float64]]:
+def _numbers(bag: Bag, built: Axis, source: Input) -> Iterator[NDArray[np.float64]]:
     """Yield the samples of an input of an axis, in parts that hold some [SI]."""
-    alone = dataclasses.replace(built, inputs=(one,), open_inputs=())
+    alone = dataclasses.replace(built, inputs=(source,), open_inputs=())
     again = Bag(bag.path, salvage=True)  # remarks on messages are those of the judgement
     for events in ordered_events(again, [alone], SECOND, Notes(), on_done=lambda share: None):
         values = events['value'][(events['kind'] == SAMPLE) & np.isfinite(events['value'])]

@@ -119,7 +119,7 @@ def _objection(
         for name in ('tick_period', *(f'{axis}.{leaf}' for leaf in READING)):
             own, other = recorded[name], asked[name]
             if name.endswith('.topic'):
-                own, other = (one and parameters.absolute(one) for one in (own, other))
+                own, other = (topic and parameters.absolute(topic) for topic in (own, other))
             source = inputs.get(name.removeprefix(f'{axis}.').partition('.')[0])
             if own != other and (source is None or parameters.is_configured(axis, asked, source)):
                 return f'{name} was {own!r} and {other!r} is asked for, which reads other numbers'
@@ -134,8 +134,8 @@ def _objection(
 def _first(bag: Bag) -> tuple[EventMessage, dict[str, Snapshot]]:
     """Return the first message with snapshots, and these by axis; raises InputError without."""
     if bag not in _FIRST:
-        messages = (read(one.data) for one in bag.as_written([events_topic(bag)]))
-        message = next((one for one in messages if one.snapshots), None)
+        messages = (read(message.data) for message in bag.as_written([events_topic(bag)]))
+        message = next((message for message in messages if message.snapshots), None)
         if message is None:
             raise InputError(f'bag {bag.path}: its events hold no snapshot of an axis')
         _FIRST[bag] = message, _snapshots(message)
@@ -281,11 +281,11 @@ class RecordedEvents:
 
 
 def _values_of(bag: Bag, snapshots: Mapping[str, Snapshot]) -> dict[str, Any]:
-    found = {name: _values(one, bag.types) for name, one in snapshots.items()}
-    values = parameters.defaults(list(found))
-    for one in found.values():
-        values |= one
-    return values | {'axes': list(found)}
+    by_axis = {name: _values(snapshot, bag.types) for name, snapshot in snapshots.items()}
+    values = parameters.defaults(list(by_axis))
+    for own in by_axis.values():
+        values |= own
+    return values | {'axes': list(by_axis)}
 
 
 def _values(snapshot: Snapshot, types: Mapping[str, str]) -> dict[str, Any]:

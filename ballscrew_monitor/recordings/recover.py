@@ -107,7 +107,7 @@ def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWrit
         profiles: list[dict[str, Any]] = []
         with contextlib.suppress(InputError):
             stated = plain_values(metadata.get('offered_qos_profiles', ''))
-            if isinstance(stated, list) and all(isinstance(one, dict) for one in stated):
+            if isinstance(stated, list) and all(isinstance(part, dict) for part in stated):
                 profiles = stated
         kind = metadata.get('topic_type_hash', '')
         names = channel.topic, schema.name

@@ -292,17 +292,17 @@ def main() -> None:
         signal.signal(number, signal.SIG_IGN)
     os.nice(NICENESS)
     retention = Retention(Path(sys.argv[1]), KeepSettings(**json.loads(sys.argv[2])))
-    said = ''
+    last = ''
     for frame in read_frames(sys.stdin.buffer):
         retention.take(frame, time.monotonic())
-        said = _say(retention.problem, said)
+        last = _say(retention.problem, last)
     retention.close()
-    _say(retention.problem, said)
+    _say(retention.problem, last)
 
 
-def _say(problem: str, said: str) -> str:
+def _say(problem: str, last: str) -> str:
     """Tell the node of a change; it may be gone."""
-    if problem != said:
+    if problem != last:
         try:
             print(problem, flush=True)
         except OSError:

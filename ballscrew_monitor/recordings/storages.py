@@ -164,7 +164,7 @@ class McapStorage(Storage):
             if not reorder:
                 places.sort(key=operator.attrgetter('chunk_start_offset'))
                 for place in places:
-                    yield from (one for _, one in self._of_chunk(stream, place, channels))
+                    yield from (message for _, message in self._of_chunk(stream, place, channels))
                 return
             waiting = _Waiting()
             for place in sorted(places, key=operator.attrgetter('message_start_time')):

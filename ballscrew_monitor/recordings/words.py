@@ -52,9 +52,9 @@ def percent(part: float) -> str:
 def feed_first(text: str, lead: float) -> str:
     """Return words with each speed of the screw as a feed, the speed beside it; lead [m]."""
 
-    def shown(found: re.Match[str]) -> str:
-        turns = float(found[1])
-        return f'{number(turns * lead)} m/min, {found[1]} rev/min'
+    def shown(speed: re.Match[str]) -> str:
+        turns = float(speed[1])
+        return f'{number(turns * lead)} m/min, {speed[1]} rev/min'
 
     return TURNS.sub(shown, text)
 

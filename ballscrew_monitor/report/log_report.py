@@ -185,9 +185,9 @@ def report_log(
     """
     logs.check_output(out)
     with scratch_folder(out) as folder:
-        store, made = RowStore(folder), folder / MADE
+        store, report = RowStore(folder), folder / MADE
         with judged_bag(
-            bag, parameters.values, made / logs.JUDGED, parameters.metadata
+            bag, parameters.values, report / logs.JUDGED, parameters.metadata
         ) as add_state:
             log = judge_log(
                 bag,
@@ -198,18 +198,18 @@ def report_log(
                 health=True,
             )
         log = with_health(log)
-        with new_file(made / logs.STATES) as partial:
+        with new_file(report / logs.STATES) as partial:
             store.write(partial)
         on_share(STORED_SHARE)
-        write_events(made / logs.EVENTS, log)
-        replace_file(made / logs.SUMMARY, json_text(summary_record(log)).encode())
+        write_events(report / logs.EVENTS, log)
+        replace_file(report / logs.SUMMARY, json_text(summary_record(log)).encode())
         maps = maps_of(log)
-        replace_file(made / logs.PAGE, report_page(log, maps).encode())
+        replace_file(report / logs.PAGE, report_page(log, maps).encode())
         if picture and maps:
             from ballscrew_monitor.report.picture import draw_log  # slow to load, seldom needed
 
-            draw_log(log, maps, made / logs.PICTURE)
-        logs.replace_report(made, out)
+            draw_log(log, maps, report / logs.PICTURE)
+        logs.replace_report(report, out)
         on_share(1.0)
         return _result(log)
 

@@ -227,24 +227,24 @@ def check_output(out: Path) -> None:
             )
 
 
-def replace_report(made: Path, out: Path) -> None:
+def replace_report(report: Path, out: Path) -> None:
     """
-    Let the page and the products in `made` take the place of those in `out`.
+    Let the page and the products in `report` take the place of those in `out`.
 
     Products without a page look like recordings: the old ones go before the page is replaced, the
     new ones come after it. So whatever stops it, none is beside a page that is not its own.
 
     """
-    products = {path.relative_to(made) for path in made.rglob('*') if path.is_file()} - {
+    products = {path.relative_to(report) for path in report.rglob('*') if path.is_file()} - {
         Path(PAGE)
     }
     stale = {Path(PICTURE)} if (out / PICTURE).exists() else set()
     for name in products | stale:
         (out / name).unlink(missing_ok=True)
-    (made / PAGE).replace(out / PAGE)
+    (report / PAGE).replace(out / PAGE)
     for name in products:
         (out / name).parent.mkdir(exist_ok=True)
-        (made / name).replace(out / name)
+        (report / name).replace(out / name)
 
 
 def remove_report(out: Path) -> None:

@@ -164,11 +164,11 @@ def _axis_facts(
     mapped = {} if facts is None else facts.mapping.get('axes', {}).get(axis, {})
     known = flatten(mapped) | {key: assumption['value'] for key, assumption in assumed.items()}
     stated = set(known) - {*assumed, TEMPERATURE}
-    if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and TEMPERATURE not in assumed:
+    if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.stated and TEMPERATURE not in assumed:
         stated.add(TEMPERATURE)
     lead, defaulted = known.get('lead_mm'), set[str]()
     if facts is not None and not chosen.is_given:  # what nobody said: model, limits, all
-        given = chosen.said - {assumption.key for assumption in facts.assumptions}
+        given = chosen.stated - {assumption.key for assumption in facts.assumptions}
         if not {f'{axis}.surface', f'{axis}.screw'} & given:
             defaulted.add('surface')
         if not any(name.startswith(f'{axis}.limits.') for name in given):
@@ -204,5 +204,5 @@ def _metadata(bag: Bag, facts: LogFacts | None, chosen: ChosenValues) -> dict[st
         own |= {key: text for key, text in facts.texts().items() if key in own}
     if chosen.is_nominal:
         return own
-    text = log_facts.parameters_text(chosen.values, chosen.said)
+    text = log_facts.parameters_text(chosen.values, chosen.stated)
     return own | {f'{PREFIX}parameters': text}

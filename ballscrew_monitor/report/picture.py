@@ -56,7 +56,9 @@ def figure_log(log: LogCase, maps: Sequence[OperatingMap]) -> Figure:
     for part, case, chart in zip(parts, log.axes, maps, strict=True):
         upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
         axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
-        judged, contact = (textwrap.fill(one, LINE) for one in (verdict.whole, verdict.contact))
+        judged, contact = (
+            textwrap.fill(sentence, LINE) for sentence in (verdict.whole, verdict.contact)
+        )
         axes.set_title(
             f'{judged}\n{contact}\n'
             f'screw {surface.screw_name}, oil {surface.oil_name}, '

@@ -54,10 +54,10 @@ class _StrictLoader(_Loader):
         """Return the mapping; raises YAMLError for a key that stands twice."""
         mapping = super().construct_mapping(node, deep)
         left = set(mapping)
-        for one, _ in node.value:
-            key = self.construct_object(one, deep=True)
+        for entry, _ in node.value:
+            key = self.construct_object(entry, deep=True)
             if key not in left:
-                raise yaml.YAMLError(f'key {one.value} stands twice')
+                raise yaml.YAMLError(f'key {entry.value} stands twice')
             left.remove(key)
         return mapping
 

@@ -296,10 +296,10 @@ class Store:
 def identity(file: Path | int) -> tuple[int, int] | None:
     """Return what tells a file, by path or descriptor, from every other; None: there is none."""
     try:
-        found = os.stat(file)
+        status = os.stat(file)
     except OSError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def connected(file: Path, limit: int, *, alone: bool = False) -> sqlite3.Connection:

@@ -143,7 +143,7 @@ class DragProblem:
             amounts, norm = _bounded(columns, rest, room, either)
             return norm, power, over, fade, amounts
 
-        tried = [faded(*one) for one in itertools.product(SEAL_POWERS, SEAL_SLIDING.tolist())]
+        tried = [faded(*fade) for fade in itertools.product(SEAL_POWERS, SEAL_SLIDING.tolist())]
         for step in 2.0 ** np.array(FINER):
             _, power, over, *_ = min(tried, key=itemgetter(0))
             tried += [faded(power, over * step), faded(power, over / step)]

@@ -311,7 +311,7 @@ def residual(problem: BallProblem, unknowns: Vector, friction: Sequence[Vector])
     """
     values = (problem.scales * unknowns.T).T
     unit, screw = problem.force_unit, problem.screw
-    loads = [contact_load(problem, which, values, one) for which, one in enumerate(friction)]
+    loads = [contact_load(problem, which, values, force) for which, force in enumerate(friction)]
     inertia = inertia_load(problem, values)
     forces = (sum(force for force, _ in loads) + inertia[0]) / unit
     moments = (sum(moment for _, moment in loads) + inertia[1]) / (

@@ -96,18 +96,18 @@ def figure_point(screw: Screw, solution: ScrewSolution, record: dict[str, Any]) 
     if pressed:
         axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
         solved = [contact.solved for contact in pressed if contact.solved is not None]
-        top = GIGA * max(one.pressed.max_pressure for one in solved)
-        bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
+        top = GIGA * max(contact.pressed.max_pressure for contact in solved)
+        bottom = NANO * min(float(contact.pressed.film.min()) for contact in solved)
         film = LogNorm(bottom, FILM_SPAN * bottom)
-        for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
-            (upper, lower), rough = axes[:, column], one.pressed
+        for column, (contact, solved_contact) in enumerate(zip(pressed, solved, strict=True)):
+            (upper, lower), rough = axes[:, column], solved_contact.pressed
             pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
             gap = _map(lower, rough, NANO * rough.film, norm=film)
             _mark_contact(lower, rough)
             _draw_slip(lower, screw, contact, rough)
             upper.set_title(
                 f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
-                f'RCS {100 * one.asperities.rcs:.2g} %'
+                f'RCS {100 * solved_contact.asperities.rcs:.2g} %'
             )
             lower.set_xlabel('along the track [µm]', fontsize=8)
         for row in (0, 1):

@@ -76,7 +76,9 @@ def onset_bands(screw: Screw, lubricant: Lubricant, load: float, temperature: fl
     """
     point = OperatingPoint(speed=0.0, load=load, temperature=temperature)
     case = ScrewCase(screw=screw, lubricant=lubricant, point=point).faster_side
-    measured = [] if screw.roughness.onset_band else [one for one in INPUTS if one.measured]
+    measured = (
+        [] if screw.roughness.onset_band else [varied for varied in INPUTS if varied.measured]
+    )
     return bands_of(case, onset_factors(case, measured))
 
 

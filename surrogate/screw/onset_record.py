@@ -85,12 +85,12 @@ def onset_record(
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
-    found = [law_doubt(rms=sheet.rms, likely_rms=sheet.likely_rms, measured=sheet.measured)]
+    texts = [law_doubt(rms=sheet.rms, likely_rms=sheet.likely_rms, measured=sheet.measured)]
     if not shortest <= sheet.cutoff_short <= longest:
-        found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
+        texts.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:
-        found.append('rough balls (marched: smooth ones)')
-    return [text for text in found if text]
+        texts.append('rough balls (marched: smooth ones)')
+    return [text for text in texts if text]
 
 
 def onset_page(record: Mapping[str, Any]) -> str:
@@ -103,12 +103,12 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         f'{record["screw"]}, {record["oil"]}: {record["load_N"]:g} N, '
         f'{record["temperature_K"] - ZERO_CELSIUS:g} degC'
     )
-    for state, found in record['states'].items():
-        yield f'  {WORDS[state]:26} {_told(found)}'
-        yield from (f'  {"":26} {words}' for words in _narrowed(found))
+    for state, onset in record['states'].items():
+        yield f'  {WORDS[state]:26} {_told(onset)}'
+        yield from (f'  {"":26} {words}' for words in _narrowed(onset))
     states = record['states'].values()
     slowest, fastest = (
-        pick(one['band'][end] * one['speed_rad_s'] for one in states)
+        pick(state['band'][end] * state['speed_rad_s'] for state in states)
         for end, pick in enumerate((min, max))
     )
     if fastest:
@@ -128,24 +128,24 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     yield f'  roughness: {record["roughness"]}'
 
 
-def _told(found: Mapping[str, Any]) -> str:
+def _told(onset: Mapping[str, Any]) -> str:
     """Say where contact begins in one state."""
-    if not found['speed_rad_s']:
+    if not onset['speed_rad_s']:
         return 'no contact: raceway and ball are smooth'
-    cut = found['cutting_pressure_Pa']
-    low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
+    cut = onset['cutting_pressure_Pa']
+    low, high = (share * onset['speed_rad_s'] / RPM for share in onset['band'])
     return (
-        f'{MARCHED * found["marched"]}contact begins at {digits(found["speed_rad_s"] / RPM)} '
-        f'rev/min ({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
+        f'{MARCHED * onset["marched"]}contact begins at {digits(onset["speed_rad_s"] / RPM)} '
+        f'rev/min ({digits(low)} to {digits(high)}), film {1e9 * onset["central_film_m"]:.3g} nm, '
         f'cut at {GIGA * cut:g} GPa'
     )
 
 
-def _narrowed(found: Mapping[str, Any]) -> Iterator[str]:
+def _narrowed(onset: Mapping[str, Any]) -> Iterator[str]:
     """Yield what of the band the measurement leaves that narrows it most."""
-    for step in found['measure'][:1]:
-        left = both_bands(step['limit_band'], found['numerical_band'])
-        low, high = (digits(share * found['speed_rad_s'] / RPM) for share in left)
+    for step in onset['measure'][:1]:
+        left = both_bands(step['limit_band'], onset['numerical_band'])
+        low, high = (digits(share * onset['speed_rad_s'] / RPM) for share in left)
         yield f'a measured {step["measurement"]} leaves {low} to {high} rev/min'
 
 

@@ -108,8 +108,8 @@ def make_oversize(
             screw,
             load,
             [
-                None if part.normal_force <= least else one
-                for one, part in zip(pair, (ball.screw, ball.nut), strict=True)
+                None if part.normal_force <= least else contact
+                for contact, part in zip(pair, (ball.screw, ball.nut), strict=True)
             ],
             ball,
         )

@@ -31,7 +31,7 @@ def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperatur
     That of the loaded nut, for the side where contact begins faster.
 
     """
-    found = [
+    speeds = [
         [
             onset_point(opened, lubricant, force, heat)['speed_rad_s']
             for heat in temperature.tolist()
@@ -39,7 +39,7 @@ def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperatur
         for force in load.tolist()
     ]
     least = SMOOTH_ONSET / starved_speed(lubricant, opened.rates.entrainment)
-    return np.maximum(found, least)
+    return np.maximum(speeds, least)
 
 
 def with_raceway(screw: Screw, **changes: Any) -> Screw:
@@ -121,12 +121,12 @@ def law_band(
     """
     law = opened.law
     later, stated, sooner = (
-        onset_point(opened.with_law(one), lubricant, load, temperature)
-        for one in (law.shifted(-NINE_OF_TEN), law, law.shifted(NINE_OF_TEN))
+        onset_point(opened.with_law(shifted), lubricant, load, temperature)
+        for shifted in (law.shifted(-NINE_OF_TEN), law, law.shifted(NINE_OF_TEN))
     )
     if not stated['speed_rad_s']:
         return {'band': [1.0, 1.0], 'film_factor': 1.0, 'slope': math.nan}
-    low, high = (one['speed_rad_s'] / stated['speed_rad_s'] for one in (later, sooner))
+    low, high = (onset['speed_rad_s'] / stated['speed_rad_s'] for onset in (later, sooner))
     reach = NINE_OF_TEN * law.deviation
     across = math.log(sooner['entrainment_speed_m_s'] / later['entrainment_speed_m_s'])
     slope = 2 * reach / across if reach else math.nan
@@ -146,4 +146,4 @@ def onset_over_pressure(
 ) -> list[float]:
     """Return the onset speeds [rad/s] of a profile that runs in at some pressures [Pa]."""
     worn = [Contacts.of(run_in_at(screw, pressure)) for pressure in pressures]
-    return [onset_point(one, lubricant, load, temperature)['speed_rad_s'] for one in worn]
+    return [onset_point(opened, lubricant, load, temperature)['speed_rad_s'] for opened in worn]

@@ -55,14 +55,14 @@ def _rated_efficiencies(*, whole: bool) -> list[float]:
     With a typical drag, or of the contacts less what the preload alone takes.
 
     """
-    found = []
+    efficiencies = []
     for name in SIZES:
         screw = load_screw(name)
         load = RATED_SHARE * (screw.dynamic_rating or math.nan)
         idle, loaded = _torques(screw, RATED_SPEED, (0.0, load))
         friction = loaded + (screw.typical_drag or math.nan) if whole else loaded - idle
-        found.append(torque.efficiency(friction, load, screw.lead))
-    return found
+        efficiencies.append(torque.efficiency(friction, load, screw.lead))
+    return efficiencies
 
 
 def efficiency_with_drag(case: Any) -> list[float]:
@@ -77,7 +77,7 @@ def efficiency_of_load(case: Any) -> list[float]:
 
 def efficiency_over_load(case: Any) -> list[float]:
     """Return the efficiency with a typical drag under four preloads over that under one [-]."""
-    found = []
+    ratios = []
     for name in SIZES:
         screw = load_screw(name)
         loads = screw.preload, 4 * screw.preload
@@ -85,8 +85,8 @@ def efficiency_over_load(case: Any) -> list[float]:
             torque.efficiency(friction + (screw.typical_drag or math.nan), load, screw.lead)
             for friction, load in zip(_torques(screw, 1000.0, loads), loads, strict=True)
         )
-        found.append(more / less)
-    return found
+        ratios.append(more / less)
+    return ratios
 
 
 def drag_over_preload(case: Any) -> list[float]:

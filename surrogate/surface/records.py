@@ -47,9 +47,9 @@ def dtype_of(kind: type[Any]) -> np.dtype[Any]:
             parts.append((field.name, field.metadata.get('kind', _KINDS[name])))
         else:
             parts.append((field.name, _KINDS[type(field.metadata['start']).__name__], (count,)))
-    made: np.dtype[Any] = np.dtype(parts, align=True)
-    _TYPES[kind] = made
-    return made
+    dtype: np.dtype[Any] = np.dtype(parts, align=True)
+    _TYPES[kind] = dtype
+    return dtype
 
 
 def as_array(record: object) -> NDArray[Any]:
@@ -63,5 +63,8 @@ def from_array(kind: type[Record], element: Any) -> Record:
     """Return the record that an element of an array holds."""
     values = zip(element.dtype.names, element.item())  # all at once, but for lists
     return kind(
-        **{name: one.tolist() if isinstance(one, np.ndarray) else one for name, one in values}
+        **{
+            name: value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in values
+        }
     )

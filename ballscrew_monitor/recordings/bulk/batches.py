@@ -53,9 +53,12 @@ class Batch:
         """Yield the messages in the order of their log times, as published when logged."""
         every = [
             Message(topic=topic, data=data, log_time=time, publish_time=time, sequence=number)
-            for topic, found in self.topics.items()
+            for topic, messages in self.topics.items()
             for data, time, number in zip(
-                found.contents(), found.log_time.tolist(), found.sequence.tolist(), strict=True
+                messages.contents(),
+                messages.log_time.tolist(),
+                messages.sequence.tolist(),
+                strict=True,
             )
         ]
         yield from (every[at] for at in self.order().tolist())
@@ -129,15 +132,15 @@ def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]
     size = 0
     counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
-        found = chunk.storage.chunk(chunk.stream, chunk.place)
-        found = dataclasses.replace(
-            found,
-            channel=chunk.topics[found.channel],
-            place=(chunk.rank << PLACES) + found.begin,  # in the bag
+        messages = chunk.storage.chunk(chunk.stream, chunk.place)
+        messages = dataclasses.replace(
+            messages,
+            channel=chunk.topics[messages.channel],
+            place=(chunk.rank << PLACES) + messages.begin,  # in the bag
         )
-        waiting.append(found)
-        size += len(found.data)
-        numbers = np.bincount(found.channel[found.channel >= 0], minlength=len(names))
+        waiting.append(messages)
+        size += len(messages.data)
+        numbers = np.bincount(messages.channel[messages.channel >= 0], minlength=len(names))
         read = dict(zip(names, numbers.tolist(), strict=True))
         counts.setdefault(chunk.storage, Counter()).update(read)
         if size >= BATCH or number == len(chunks):
@@ -165,7 +168,7 @@ def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> 
     first = 0
     while part := _part(messages):
         size = np.array([len(message.data) for message in part])
-        found = Messages(
+        block = Messages(
             data=b''.join(message.data for message in part),
             channel=np.array([names.index(message.topic) for message in part]),
             begin=np.cumsum(size) - size,
@@ -177,7 +180,7 @@ def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> 
         first += len(part)
         until = part[-1].log_time
         done = (until - bag.start_time) / span
-        yield Batch(topics=_by_topic([found], names), until=until, done=done)
+        yield Batch(topics=_by_topic([block], names), until=until, done=done)
     yield Batch(topics={}, until=END, done=1.0)
 
 

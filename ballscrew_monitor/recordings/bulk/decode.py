@@ -53,44 +53,45 @@ def _decoded(message: Message, message_type: Any) -> Any:
 
 def silence(bag: Bag, axis: Axis) -> str:
     """Return why nothing of `axis` could be judged of `bag`, as far as its messages tell."""
-    reasons = [_fault(bag, axis, one) for one in axis.inputs]
+    reasons = [_fault(bag, axis, source) for source in axis.inputs]
     return '; '.join(filter(None, reasons))
 
 
-def _fault(bag: Bag, axis: Axis, one: Input) -> str:
+def _fault(bag: Bag, axis: Axis, source: Input) -> str:
     """Return what is wrong with an input of an axis, nothing if it has samples often enough."""
-    name = one.source.name.lower()
+    name = source.source.name.lower()
     parameter = f'{axis.name}.{name}'
-    absent = _absence(bag, one)
+    absent = _absence(bag, source)
     if isinstance(absent, OtherJoints):
         return joint_reason(absent, parameter)
     if absent is not None:
         return short_text(absent)
     times = [
-        message.log_time for message in itertools.islice(bag.messages([absolute(one.topic)]), SEEN)
+        message.log_time
+        for message in itertools.islice(bag.messages([absolute(source.topic)]), SEEN)
     ]
     gaps = sorted(after - before for before, after in itertools.pairwise(times))
     gap = gaps[len(gaps) // 2] if gaps else 0
-    if gap <= axis.monitor.settings.timeouts[one.source]:
+    if gap <= axis.monitor.settings.timeouts[source.source]:
         return ''
     return f'{name} {slow_reason(seconds(gap), parameter)}'
 
 
-def named_instead(bag: Bag, one: Input) -> str:
+def named_instead(bag: Bag, source: Input) -> str:
     """Return which joints the messages of an input name instead of its own, if they do."""
-    absent = _absence(bag, one)
+    absent = _absence(bag, source)
     if not isinstance(absent, OtherJoints):
         return ''
     return f'; they name {", ".join(absent.names) or "no joints"} and no joint {absent.joint}'
 
 
-def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
+def _absence(bag: Bag, source: Input) -> OtherJoints | TooShort | None:
     """Return what the first messages of the topic of an input hold together, if not its field."""
     readings: list[OtherJoints | TooShort] = []
-    for message in bag.messages([absolute(one.topic)]):
-        decoded = _decoded(message, one.message_type)
+    for message in bag.messages([absolute(source.topic)]):
+        decoded = _decoded(message, source.message_type)
         if decoded is not None:
-            reading = one.read_field(decoded)
+            reading = source.read_field(decoded)
             if isinstance(reading, float):
                 return None
             readings.append(reading)
@@ -99,7 +100,9 @@ def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
     first = readings[0] if readings else None
     if not isinstance(first, OtherJoints):
         return first
-    names = {name for one in readings if isinstance(one, OtherJoints) for name in one.names}
+    names = {
+        name for reading in readings if isinstance(reading, OtherJoints) for name in reading.names
+    }
     return OtherJoints(first.array, first.joint, tuple(sorted(names)))
 
 

@@ -63,8 +63,8 @@ class _Course:
         elif self._single is None and count == 1:
             self._single = first, self._latest
         else:
-            found, self._latest, self._single = self._single or (first, self._latest), last, None
-            return found
+            span, self._latest, self._single = self._single or (first, self._latest), last, None
+            return span
         return None
 
 
@@ -78,7 +78,9 @@ def _end(times: Integers) -> int:
 def check_rising(bag: Bag, times: WrittenTimes, topics: Collection[str]) -> None:
     """Raise InputError if log times go back; `times` has those of a bag that is read by chunks."""
     falls = [*times.falls()]
-    if not all(isinstance(one, McapStorage) and one.is_indexed for one in bag.storages):
+    if not all(
+        isinstance(storage, McapStorage) and storage.is_indexed for storage in bag.storages
+    ):
         courses: dict[str, _Course] = {}
         for message in bag.as_written(topics):
             course = courses.setdefault(message.topic, _Course())

@@ -79,12 +79,12 @@ def gathered(surface, some, settings=None, **options):
 def job(usual_limits):
     """Return what makes a job of an axis."""
 
-    def make_job(worker, surface, found=NOTHING, **changes):
+    def make_job(worker, surface, collected=NOTHING, **changes):
         values = {
             'keeper': HealthKeeper('x', worker.store),
             'axis': 'x',
             'now': NOON,
-            'found': found,
+            'collected': collected,
             'surface': surface,
             'settings': HealthSettings(limits=usual_limits),
             'policy': WarningPolicy.BOTH,

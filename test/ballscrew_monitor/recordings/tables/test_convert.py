@@ -115,10 +115,10 @@ def test_every_sample_is_judged_with_parameters_given_else_own_else_nominal(mill
     nominal = values_for(Bag(short_bag), None, NOMINAL)
     assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
     assert nominal.origin.endswith('the nominal ones')
-    said = values_for(mill_bag, None, NOMINAL).said
+    said = values_for(mill_bag, None, NOMINAL).stated
     assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
     assert 'x.limits.rcs' not in said
-    assert not values_for(Bag(short_bag), None, NOMINAL).said
+    assert not values_for(Bag(short_bag), None, NOMINAL).stated
 
 
 def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
