@@ -159,10 +159,10 @@ def brakes_always(torque: Array, speed: Array) -> bool:
 def slopes(positions: Array) -> Array:
     """Return the changes of positions from row to row [-], of those that hold one."""
     known = np.flatnonzero(np.isfinite(positions))
-    found = np.full(len(positions), math.nan)
+    slope = np.full(len(positions), math.nan)
     if len(known) > 1:
-        found[known] = np.gradient(positions[known])
-    return found
+        slope[known] = np.gradient(positions[known])
+    return slope
 
 
 def fault_of_speed(speed: Array, position: Array, places: Array) -> str:

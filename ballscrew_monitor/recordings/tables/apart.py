@@ -42,8 +42,8 @@ def _read(
         target = Path(folder) / 'cells.arrow'
         stated = {'path': shown, 'target': str(target), **dict(inputs)}
         failure = f'log {shown} cannot be read'
-        told = result_apart(task, stated, memory=limits.MEMORY, failure=failure)
-        return pl.read_ipc(target), told  # its memory is the file, which stays without its name
+        result = result_apart(task, stated, memory=limits.MEMORY, failure=failure)
+        return pl.read_ipc(target), result  # its memory is the file, which stays without its name
 
 
 def library_of(module: str, path: Path, what: str, package: str = '') -> Any:

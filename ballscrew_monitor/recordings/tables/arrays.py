@@ -43,7 +43,7 @@ def _flattened(content: Mapping[str, Any], before: str = '') -> Iterable[tuple[s
 def read_hdf(path: Path) -> Signals:
     """Return the datasets of a file of HDF5, in the unit that their attributes state."""
     h5py = library_of('h5py', path, 'HDF5 and MATLAB 7.3')
-    found: dict[str, Any] = {}
+    held: dict[str, Any] = {}
     factors: list[str] = []
     datasets: dict[str, Any] = {}
 
@@ -66,17 +66,17 @@ def read_hdf(path: Path) -> Signals:
         for called, item in datasets.items():
             shape, is_numeric = item.shape or (), called in numeric
             if not is_numeric or not _columns_of(shape):  # it is not read
-                found[called] = np.broadcast_to(0.0 if is_numeric else np.void(b' '), shape)
+                held[called] = np.broadcast_to(0.0 if is_numeric else np.void(b' '), shape)
                 continue
             for field in item.dtype.names or ():
-                found[f'{called}.{field}'] = np.squeeze(item[field])
+                held[f'{called}.{field}'] = np.squeeze(item[field])
             if not item.dtype.names:
                 units = np.ravel(item.attrs.get('unit', item.attrs.get('units', b'')))
                 unit = units[0] if units.size else ''
-                told = unit.decode() if isinstance(unit, bytes) else str(unit)
-                found[with_unit(called, told)] = _scaled(item)
+                text = unit.decode() if isinstance(unit, bytes) else str(unit)
+                held[with_unit(called, text)] = _scaled(item)
                 factors.extend(_unclear_factors(called, item.attrs))
-        return _signals(found, factors)
+        return _signals(held, factors)
 
 
 def _scaled(dataset: Any) -> Any:
@@ -94,7 +94,7 @@ def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterable[str]:
     known = (SCALE_FACTOR, ADD_OFFSET)
     numbers = {key: value for key, value in attributes.items() if key not in known}
     of = f'{name}: ' if name else ''
-    return (f'{of}{told}' for told in stated_factors(numbers))
+    return (f'{of}{factor}' for factor in stated_factors(numbers))
 
 
 def _columns_of(shape: Sequence[int]) -> int:
@@ -126,5 +126,5 @@ def _signals(content: Mapping[str, Any], factors: Sequence[str] = ()) -> Signals
         elif array.size > 1:
             left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
     scalars = {name: value for name, value in content.items() if np.ndim(value) == 0}
-    told = ', '.join([*factors, *stated_factors(scalars)])
-    return signals_of(held, scalars, {}, factors=told, left_out=left_out)
+    stated = ', '.join([*factors, *stated_factors(scalars)])
+    return signals_of(held, scalars, {}, factors=stated, left_out=left_out)

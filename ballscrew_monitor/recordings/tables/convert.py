@@ -45,9 +45,9 @@ def convert(
 def print_guess(log: Path) -> None:
     """Print a first map of a log, and to standard error what is to be said about it."""
     _check_log(log)
-    made = guess(log, shown=shown_progress)
-    print(made.text, end='')
-    say(*made.picture, *made.notes, *made.unstated)
+    draft = guess(log, shown=shown_progress)
+    print(draft.text, end='')
+    say(*draft.picture, *draft.notes, *draft.unstated)
 
 
 def make_bag(log: Path, config: Path | None, out: Path | None) -> None:

@@ -96,9 +96,11 @@ def start_in_head(head: Head) -> Start:
         scale, offset = SCALES['filetime']
         return Start(text, row, {'': float(text) * scale + offset})
     for each in (text + clock, text):
-        found = [(form.order, moment) for moment, form in moments_of(each) if form.kind != 'hours']
-        if found:
-            return Start(each, row, dict(found))
+        moments = [
+            (form.order, moment) for moment, form in moments_of(each) if form.kind != 'hours'
+        ]
+        if moments:
+            return Start(each, row, dict(moments))
     return Start()
 
 

@@ -106,7 +106,7 @@ def unclear_none(
     marks = marks_of_none(values)
     if not marks:
         return ''
-    told, every, known = (
+    words, every, known = (
         [f'{one:.12g}' for one in some] for some in (marks, sorted({*stated, *marks}), stated)
     )
     stand, if_not, them = ('stand', 'they are values', 'them')
@@ -115,7 +115,7 @@ def unclear_none(
     rows = [counted(int(np.count_nonzero(values == one)), 'row') for one in marks]
     emptied = f' and leave the cells of {" and ".join(known)} empty' if stated else ''
     return (
-        f'state axes.{axis}.{kind}.none in the map, [{", ".join(every)}] if {" and ".join(told)} '
+        f'state axes.{axis}.{kind}.none in the map, [{", ".join(every)}] if {" and ".join(words)} '
         f'{stand} for no value, []{emptied} if {if_not}: {short(column)} holds {them} in '
         f'{" and ".join(rows)}, far beyond all others'
     )
@@ -182,8 +182,8 @@ def _sampled(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[st
 def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
     """Yield what is unclear of the rows and scales of columns, and wrong with positions."""
     marks = [mark.column for each in mapping.marks.values() for mark in each.held]
-    told = cells_of_sources(table.source, {*mapping.columns, *marks})
-    for name, cells in told.items():
+    by_column = cells_of_sources(table.source, {*mapping.columns, *marks})
+    for name, cells in by_column.items():
         if len(cells) > 1:
             yield of_several(name, cells)
         else:
@@ -221,9 +221,9 @@ def doubts_of_columns(mapping: TableMap, table: Table) -> Iterator[str]:
 
 def _of_another_axis(mapping: TableMap, what: str, text: str) -> Iterator[str]:
     """Yield what is wrong if a text about all rows names another axis than the only one."""
-    told, stated = axis_of_all(text), axis_of_all(mapping.axes[0].name)
-    if len(mapping.axes) == 1 and told and stated not in ('', told):
-        yield f'{what} of axis {told}, the map states axis {stated}: name axis {told} in the map'
+    named, stated = axis_of_all(text), axis_of_all(mapping.axes[0].name)
+    if len(mapping.axes) == 1 and named and stated not in ('', named):
+        yield f'{what} of axis {named}, the map states axis {stated}: name axis {named} in the map'
 
 
 def of_other_axes(mapping: TableMap) -> Iterator[str]:
@@ -232,11 +232,11 @@ def of_other_axes(mapping: TableMap) -> Iterator[str]:
         stated = axis_of_all(axis.name)
         for kind, column in axis.columns.items():
             named = read_name(column.name)
-            told = named.axis[:1] if named.place == 'axis' else ''
-            if stated and told in LINEAR - {stated}:
+            axis_named = named.axis[:1] if named.place == 'axis' else ''
+            if stated and axis_named in LINEAR - {stated}:
                 yield (
                     f'axis {axis.name}: its {kind} is {short(column.name)} by the map, which the '
-                    f'name says to be of axis {told}'
+                    f'name says to be of axis {axis_named}'
                 )
 
 

@@ -58,11 +58,11 @@ class EvenRows:
         cuts = np.flatnonzero(np.abs(np.diff(stamps)) > LONG * self.step) + 1
         return np.concatenate([self._line(part) for part in np.split(stamps, cuts)])
 
-    def blocks(self, told: Iterable[Block]) -> Iterator[Block]:
+    def blocks(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks with even times; the last rows of a block wait for the next."""
         stamps = np.zeros(0)
         held: Block | None = None
-        for block in told:
+        for block in blocks:
             row, times, columns = block if held is None else behind(held, block)
             ready = max(len(times) - KEPT, 0) // STRETCH * STRETCH
             if ready:

@@ -76,10 +76,10 @@ def joined_time(names: Sequence[str], rows: Callable[[list[str]], pl.DataFrame])
     for columns in _candidates(names):
         if _are_parts(columns, rows(list(columns.values()))):
             first = names[min(map(names.index, columns.values()))]
-            told = ', '.join(BRACKETS.sub('', one).strip() for one in columns.values())
+            parts = ', '.join(BRACKETS.sub('', one).strip() for one in columns.values())
             counts = _text(rows([first]).to_series()).str.contains(WHOLE).fill_null(False).all()
             of_clock = 'hour' in columns or ('moment' in columns and not counts)
-            name = f'time of {told}' if of_clock else f'time of {told} [s]'
+            name = f'time of {parts}' if of_clock else f'time of {parts} [s]'
             return JoinedTime(name=name, columns=columns)
     return JoinedTime(name='', columns={})
 

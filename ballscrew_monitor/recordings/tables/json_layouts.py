@@ -235,8 +235,8 @@ def _named_rows(content: Content) -> Content:
     if not (_are(str, names) and _are(list, rows)):
         return None
     units = _first(content, UNIT)
-    told = [*(units if _are(str, units) else []), *[''] * len(names)]
-    return _columns([with_unit(*pair) for pair in zip(names, told, strict=False)], rows, content)
+    every = [*(units if _are(str, units) else []), *[''] * len(names)]
+    return _columns([with_unit(*pair) for pair in zip(names, every, strict=False)], rows, content)
 
 
 def _columns(names: Sequence[str], rows: list[Any], content: Mapping[str, Any]) -> Content:
@@ -352,16 +352,16 @@ def _nested_records(content: Content) -> Content:
 
 
 def _flat(record: Mapping[str, Any], before: str = '') -> list[tuple[str, Any]]:
-    found = []
+    cells = []
     for key, value in record.items():
         name = f'{before}{key}'
         if isinstance(value, dict) and 'value' in value:
-            found.append((with_unit(name, _first(value, UNIT)), value['value']))
+            cells.append((with_unit(name, _first(value, UNIT)), value['value']))
         elif isinstance(value, dict):
-            found += _flat(value, f'{name}.')
+            cells += _flat(value, f'{name}.')
         else:
-            found.append((name, value))
-    return found
+            cells.append((name, value))
+    return cells
 
 
 def _within(content: Content) -> Content:

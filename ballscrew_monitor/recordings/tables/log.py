@@ -120,12 +120,12 @@ class TableLog(Bag):
             )
             place = np.empty(len(order), np.int64)
             place[order] = begin + np.arange(len(order))
-            found, at = {}, 0
+            by_topic, at = {}, 0
             for name, each in zip(wanted, stamps, strict=True):
                 pattern, count, end = self._patterns[name], len(each), at + len(each)
                 rows = groups[pattern.group]
                 messages = serialised(pattern.message, self._columns, rows)
-                found[name] = Messages(
+                by_topic[name] = Messages(
                     data=messages.tobytes(),
                     channel=np.zeros(count, np.int64),
                     begin=np.arange(count) * messages.itemsize,
@@ -142,7 +142,7 @@ class TableLog(Bag):
                 if done == self.count
                 else max(int(rows.stamps[-1]) for rows in groups if len(rows.stamps))
             )
-            yield Batch(topics=found, until=until, done=done / self.count)
+            yield Batch(topics=by_topic, until=until, done=done / self.count)
 
     def events(
         self, axes: list[Axis], period: int, notes: Notes, on_done: OnDone
@@ -346,16 +346,16 @@ def _lead_note(axis: AxisMap, values: dict[str, Any]) -> str:
 
 def _derived(mapping: TableMap) -> list[Assumption]:
     """Return what the import itself works out."""
-    found = []
+    assumptions = []
     for axis in mapping.axes:
         if 'speed' not in axis.columns:
             why = 'the map names no column of the speed'
             key = f'{axis.name}.speed'
-            found.append(Assumption(key=key, value='slope of the position', reason=why))
+            assumptions.append(Assumption(key=key, value='slope of the position', reason=why))
         if 'load' not in axis.columns and not axis.load_from:
             why = axis.unknown.get('load', NAMES_NONE)
-            found.append(Assumption(key=f'{axis.name}.load', value='unknown', reason=why))
-    return found
+            assumptions.append(Assumption(key=f'{axis.name}.load', value='unknown', reason=why))
+    return assumptions
 
 
 def _unknown(mapping: TableMap) -> list[str]:

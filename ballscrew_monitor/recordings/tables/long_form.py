@@ -191,15 +191,15 @@ def _cells(line: str, separator: str) -> list[str]:
 
 def _roles(row: Sequence[str]) -> dict[str, int]:
     """Return the column of each role by the words of a row; an `id` is a name without another."""
-    found: dict[str, int] = {}
+    roles: dict[str, int] = {}
     words = [re.sub(r'[\W\d_]+', '', BRACKETS.sub('', cell).lower()) for cell in row]
     for at, plain in enumerate(words):
         role = next((role for role, words in ROLES.items() if plain in words), '')
         if role:
-            found.setdefault(role, at)
-    if 'name' not in found and 'id' in words:
-        found['name'] = words.index('id')
-    return found
+            roles.setdefault(role, at)
+    if 'name' not in roles and 'id' in words:
+        roles['name'] = words.index('id')
+    return roles
 
 
 def _roles_by_cells(columns: Sequence[Sequence[str]]) -> dict[str, int]:
@@ -228,13 +228,13 @@ def _times(
     columns: Sequence[Sequence[str]], names: Sequence[str], others: set[int]
 ) -> dict[int, str]:
     """Return the columns of a time, each with its name."""
-    found = {
+    times = {
         at: name
         for at, name in enumerate(names)
         if at not in others and TIMES.search(name) and read_name(name).kind in ('time', '')
     }
-    if found:
-        return found
+    if times:
+        return times
     left = [at for at in range(len(columns)) if at not in others]
     dated = [at for at in left if _share(map(_is_time, columns[at])) >= MOSTLY]
     numbers = [at for at in left if _share(map(is_number, columns[at])) == 1.0]
@@ -244,8 +244,8 @@ def _times(
     return {at: names[at] or f'time {number + 1}' for number, at in enumerate(chosen)}
 
 
-def _share(found: Iterable[bool]) -> float:
-    return statistics.fmean(found)
+def _share(flags: Iterable[bool]) -> float:
+    return statistics.fmean(flags)
 
 
 def is_number(cell: str) -> bool:
@@ -310,10 +310,10 @@ def _with_units(names: pl.Series, units: pl.Series) -> pl.Series:
                 f'{unit or "no unit"}: one of them must go'
             )
         called[name] = unit
-    told = {
+    renamed = {
         name: name
         if BRACKETS.search(name) or not is_unit(unit)
         else f'{name} [{unit.strip("[]()")}]'
         for name, unit in called.items()
     }
-    return names.replace(told)
+    return names.replace(renamed)

@@ -287,7 +287,7 @@ def make_map(content: Any) -> TableMap:
     if date_from:  # an assumed epoch gives way
         epoch, assumptions = None, tuple(one for one in assumptions if one.key != 'time.epoch')
     time = _Part('time', values)
-    made = TableMap(
+    mapping = TableMap(
         layout=_layout(content),
         sheet=_sheet(content),
         decimal=_decimal(content),
@@ -302,13 +302,13 @@ def make_map(content: Any) -> TableMap:
         parameters=_flatten(content.get('parameters') or {}, ''),
         content=content,
     )
-    if made.time is None and math.isnan(made.rate):
+    if mapping.time is None and math.isnan(mapping.rate):
         raise InputError('time is missing, it must name a column or a rate_Hz')
-    if made.time is not None and not math.isnan(made.rate):
+    if mapping.time is not None and not math.isnan(mapping.rate):
         raise InputError('time states both column and rate_Hz, one must go')
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
-    return made
+    return mapping
 
 
 def _date_from(content: Mapping[str, Any], stated: Mapping[str, Any]) -> str:
@@ -323,12 +323,12 @@ def _date_from(content: Mapping[str, Any], stated: Mapping[str, Any]) -> str:
 
 def _layout(content: Mapping[str, Any]) -> Layout | None:
     """Return where a map says that the names of the columns stand, None if it does not."""
-    found = {}
+    lines = {}
     for key, (low, high) in LINES.items():
-        value = found[key] = content.get(key, getattr(Layout(), key))
+        value = lines[key] = content.get(key, getattr(Layout(), key))
         if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
             raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
-    return Layout(**found) if set(LINES) & set(content) else None
+    return Layout(**lines) if set(LINES) & set(content) else None
 
 
 def _sheet(content: Mapping[str, Any]) -> str:
@@ -435,8 +435,8 @@ class _Part:
         is_scaled = f'{part._prefix}.scale' in part._values
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
-            found = 'missing' if unit is None else repr(unit)
-            raise InputError(f'{part._prefix}.unit is {found}, allowed are {", ".join(units)}')
+            stated = 'missing' if unit is None else repr(unit)
+            raise InputError(f'{part._prefix}.unit is {stated}, allowed are {", ".join(units)}')
         if not all(map(_is_number, numbers)) or not numbers[0]:
             raise InputError(
                 f'{part._prefix}: scale and offset are {_said(numbers[0])} and '
@@ -460,10 +460,10 @@ class _Part:
 
 def _axis(name: str, values: dict[str, Any]) -> AxisMap:
     part = _Part(name, values)
-    found = {kind: part.column(kind) for kind in INPUTS}
-    made = AxisMap(
+    columns = {kind: part.column(kind) for kind in INPUTS}
+    axis = AxisMap(
         name=name,
-        columns={kind: column for kind, column in found.items() if column},
+        columns={kind: column for kind, column in columns.items() if column},
         lead=part.number('lead_mm') / MILLI,
         torque_constant=part.number('torque_constant_Nm_per_A'),
         torque_rated=part.number('torque_rated_Nm'),
@@ -477,8 +477,8 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         unknown={kind: text for kind in INPUTS if (text := part.text(f'{kind}.unknown'))},
         texts={key: text for key in TEXTS if (text := part.text(key))},
     )
-    _check_axis(made)
-    return made
+    _check_axis(axis)
+    return axis
 
 
 def _check_axis(axis: AxisMap) -> None:
@@ -517,13 +517,15 @@ def _check_axis(axis: AxisMap) -> None:
 
 def _assumptions(content: Any) -> tuple[Assumption, ...]:
     _check_keys('assumed', content, None)
-    made = []
+    assumptions = []
     for key, entry in content.items():
         _check_keys(f'assumed {key}', entry, ('value', 'reason'))
         if not entry.get('reason') or 'value' not in entry:
             raise InputError(f'assumed {key} must have a value and a reason')
-        made.append(Assumption(key=str(key), value=entry['value'], reason=str(entry['reason'])))
-    return tuple(made)
+        assumptions.append(
+            Assumption(key=str(key), value=entry['value'], reason=str(entry['reason']))
+        )
+    return tuple(assumptions)
 
 
 def _joined(stated: dict[str, Any], assumptions: tuple[Assumption, ...]) -> dict[str, Any]:

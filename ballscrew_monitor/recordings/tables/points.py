@@ -72,11 +72,11 @@ def read_points(path: Path, asked: PointColumns) -> tuple[dict[str, Array], tupl
     }
     blocks = list(table.blocks())
     numbers = {name: np.concatenate([block[name] for block in blocks]) for name in table.readings}
-    found = {
+    quantities = {
         quantity: numbers[name] * scalings[quantity].factor + scalings[quantity].shift
         for quantity, name in chosen.items()
     }
-    return found, table.notes
+    return quantities, table.notes
 
 
 def _column_of(
@@ -89,18 +89,18 @@ def _column_of(
         if one.kind == kind and bool(SPREAD & set(words_of(one.column))) is spread
     ]
     best = max((one.rank for one in named), default=0)
-    found = [one.column for one in named if one.rank == best]
-    if len(found) > 1:
+    columns = [one.column for one in named if one.rank == best]
+    if len(columns) > 1:
         remedy = f'{option} names the one that counts' if option else 'leave one out'
-        raise InputError(f'log {path}: {listed(found)} are all a {kind}: {remedy}')
-    if not found and option:
+        raise InputError(f'log {path}: {listed(columns)} are all a {kind}: {remedy}')
+    if not columns and option:
         current = kind == 'torque' and any(read_name(name).kind == 'current' for name in names)
         constant = ', and --torque-constant K takes the current [N m/A]' if current else ''
         raise InputError(
             f'log {path}: no column is a {kind} by its name, the log holds {listed(names)}: '
             f'{option} names one{constant}'
         )
-    return found[0] if found else ''
+    return columns[0] if columns else ''
 
 
 def _scaling(path: Path, column: str, kind: str, asked: PointColumns) -> conversions.Scaling:

@@ -168,7 +168,7 @@ def look_through(
 ) -> Table:
     """Look through columns that a table holds, as `open_table` does, but keep the doubts."""
     left_out: dict[str, str] = {}
-    found = {
+    columns = {
         name: Cells(
             source.path,
             name,
@@ -180,9 +180,9 @@ def look_through(
     }
     rows, types, sample = 0, dict[str, Any](), Sample()
     with shown(source.rows, 'rows looked through') as show:
-        for block in source.blocks(list(found), types):
+        for block in source.blocks(list(columns), types):
             _check_names_within(source, block, source.head.first + rows)
-            for name, cells in found.items():
+            for name, cells in columns.items():
                 if name in left_out:
                     continue
                 with _left_out(name, left_out, optional):
@@ -196,11 +196,11 @@ def look_through(
     if not rows:
         raise InputError(f'log {source.path} holds no row, at least two are needed')
     short_rows = _short_rows(source, rows)
-    decision = _decision(source, found, decimal)
-    shown_order = order or _order(source, found)
+    decision = _decision(source, columns, decimal)
+    shown_order = order or _order(source, columns)
     readings: dict[str, Reading] = {}
     doubts: dict[str, str] = {}
-    for name, cells in found.items():
+    for name, cells in columns.items():
         if name in left_out:
             continue
         with _left_out(name, left_out, optional):
@@ -217,7 +217,7 @@ def look_through(
             *source.notes,
             *short_rows,
             *(one.note for one in readings.values() if one.note),
-            *_decided(source, found, decision),
+            *_decided(source, columns, decision),
         ),
         left_out=left_out,
         doubts=doubts,
@@ -259,9 +259,9 @@ def _short_rows(source: Source, rows: int) -> list[str]:
     return [f'{words}; left out']
 
 
-def _decided(source: Source, found: Mapping[str, Cells], decision: Decision) -> list[str]:
+def _decided(source: Source, columns: Mapping[str, Cells], decision: Decision) -> list[str]:
     """Return in a sentence by what numbers are read that could be others, if there are any."""
-    cells = [one.signs.doubtful for one in found.values() if one.signs.doubtful]
+    cells = [one.signs.doubtful for one in columns.values() if one.signs.doubtful]
     if not cells or not decision.words:
         return []
     sign, cell = next(iter(cells[0].items()))
@@ -269,9 +269,9 @@ def _decided(source: Source, found: Mapping[str, Cells], decision: Decision) -> 
     return [f'log {source.path}: {decision.words}: {cell.words} is {number}']
 
 
-def _order(source: Source, found: Mapping[str, Cells]) -> str:
+def _order(source: Source, columns: Mapping[str, Cells]) -> str:
     """Return the order of day and month that dates of the log or its head show, else nothing."""
-    orders = {cells.order for cells in found.values()}
+    orders = {cells.order for cells in columns.values()}
     if 'start' in source.head.properties:
         moments = moments_of(source.head.properties['start'].text)
         orders |= {form.order for _, form in moments} if len(moments) == 1 else set()
@@ -279,7 +279,7 @@ def _order(source: Source, found: Mapping[str, Cells]) -> str:
     return orders.pop() if len(orders) == 1 else ''
 
 
-def _decision(source: Source, found: Mapping[str, Cells], stated: str) -> Decision:
+def _decision(source: Source, columns: Mapping[str, Cells], stated: str) -> Decision:
     """
     Return the decimal sign of a table; columns that are not read are asked where others doubt.
 
@@ -290,14 +290,14 @@ def _decision(source: Source, found: Mapping[str, Cells], stated: str) -> Decisi
     if 'decimal' in head.properties and not stated:
         text = head.properties['decimal'].text.strip()
         stated = text if text in OTHER_SIGN else {'comma': ',', 'point': '.'}.get(text.lower(), '')
-    signs = {name: cells.signs for name, cells in found.items()}
+    signs = {name: cells.signs for name, cells in columns.items()}
     usual = '.' if head.separator in SURE_BETWEEN else ''
     decision = decide(signs, stated, usual)
     if decision.proofs or stated or not any(one.doubtful for one in signs.values()):
         return decision
     first = source.first_rows()
     for name in source.names():
-        if name not in found and first[name].dtype == pl.String:
+        if name not in columns and first[name].dtype == pl.String:
             cells = Cells(source.path, name, first_row=head.first)
             cells.add(first[name])
             numbers = [one.good for one in cells.numbers]

@@ -76,7 +76,7 @@ class Signals:
         )
 
 
-def signals_of(columns: Columns, beside: Columns, stated: Columns, **told: Any) -> Signals:
+def signals_of(columns: Columns, beside: Columns, stated: Columns, **more: Any) -> Signals:
     """
     Return columns side by side, by the numbers that stand `beside` them.
 
@@ -110,7 +110,7 @@ def signals_of(columns: Columns, beside: Columns, stated: Columns, **told: Any) 
         period=period,
         unclear_period=unclear if math.isnan(period) else '',
         arrays=lengths(columns),
-        **{'factors': ', '.join(stated_factors(beside)), **told},
+        **{'factors': ', '.join(stated_factors(beside)), **more},
     )
 
 
@@ -163,12 +163,12 @@ def side_by_side(columns: Columns) -> pl.DataFrame:
 
 def behind_times(groups: Sequence[tuple[Any, Columns]]) -> dict[str, Any]:
     """Return the columns of groups of one time each [s], which stands before them."""
-    found: dict[str, Any] = {}
+    held: dict[str, Any] = {}
     for times, columns in groups:
         first = BRACKETS.sub('', next(iter(columns))).strip()
-        found['time [s]' if len(groups) == 1 else f'{first} time [s]'] = times
-        found |= columns
-    return found
+        held['time [s]' if len(groups) == 1 else f'{first} time [s]'] = times
+        held |= columns
+    return held
 
 
 def columns_of_records(

@@ -275,18 +275,18 @@ class TimeGate:
 
     def shifts(self, offsets: Sequence[float]) -> dict[int, float]:
         """Return what is added to the times from some rows on [s], by the offset of each run."""
-        found: dict[int, float] = {}
+        by_row: dict[int, float] = {}
         for run, shift in zip(self.runs, offsets, strict=True):
             if shift:
-                found[run.row] = shift
+                by_row[run.row] = shift
             for row, back in self.clocks:
                 if run.row < row <= run.last:
-                    found[row] = shift = shift + back
-        return found
+                    by_row[row] = shift = shift + back
+        return by_row
 
     def words(self) -> list[str]:
         """Return in a sentence each the runs, and where a clock was set back or on."""
-        found = [
+        sentences = [
             f'the clock is set on by an hour in row {row}: times go on there without it'
             if back < 0.0
             else f'the clock is set back by an hour in row {row}: times go on there'
@@ -299,11 +299,11 @@ class TimeGate:
                 f'rows {run.row} to {run.last} ({run.end - run.begin:.4g} s)' for run in self.runs
             ]
             shown = listed if len(listed) <= AGAIN else [*listed[:AGAIN], '...']
-            found.append(
+            sentences.append(
                 f'time begins again {counted(len(self.runs) - 1, "time")}: {len(self.runs)} runs '
                 f'are each judged apart, {", ".join(shown)}'
             )
-        return found
+        return sentences
 
     @property
     def shared(self) -> float:
@@ -450,5 +450,5 @@ def _median(counts: Mapping[float, int] | Mapping[int, int]) -> float:
 
 
 def _counts(values: NDArray[np.generic]) -> list[tuple[float, int]]:
-    found, counts = np.unique(values, return_counts=True)
-    return list(zip(found.tolist(), counts.tolist(), strict=True))
+    different, counts = np.unique(values, return_counts=True)
+    return list(zip(different.tolist(), counts.tolist(), strict=True))

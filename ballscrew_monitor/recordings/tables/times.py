@@ -157,13 +157,13 @@ def groups_of(table: Table, mapping: TableMap) -> list[Group]:
         for kind, column in axis.columns.items()
         if kind in ('speed', 'position')
     }
-    found: dict[tuple[str, tuple[int, int], bool], list[str]] = {}
+    by_key: dict[tuple[str, tuple[int, int], bool], list[str]] = {}
     main = mapping.time.name if mapping.time else ''
     for axis in mapping.axes:
         for column in axis.columns.values():
             holes = table.readings[column.name].holes
             key = (column.time or main, holes, bool(column.hold))
-            found.setdefault(key, []).append(column.name)
+            by_key.setdefault(key, []).append(column.name)
     groups = [
         Group(
             columns=tuple(dict.fromkeys(names)),
@@ -173,7 +173,7 @@ def groups_of(table: Table, mapping: TableMap) -> list[Group]:
             is_motion=bool(motion & set(names)),
             hold=hold,
         )
-        for (time, holes, hold), names in found.items()
+        for (time, holes, hold), names in by_key.items()
     ]
     return sorted(groups, key=lambda group: not group.is_motion)
 
@@ -199,11 +199,11 @@ class Spread:
             f'{self.usual / self.step:.4g} rows in a second'
         )
 
-    def blocks(self, told: Iterable[Block]) -> Iterator[Block]:
+    def blocks(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks with their times spread; the rows of the last one wait for the next."""
         held: Block | None = None
         first = True
-        for block in told:
+        for block in blocks:
             row, times, columns = block if held is None else behind(held, block)
             ready = int(np.flatnonzero(np.append(True, times != times[-1]))[-1])
             if ready:
@@ -394,31 +394,31 @@ class Times:
 
     def notes(self) -> list[str]:
         """Return what is odd about the times, a sentence each."""
-        found, log = [], f'log {self._table.path}:'
+        sentences, log = [], f'log {self._table.path}:'
         if self._is_from_1904:
-            found.append(f'{log} its workbook counts days from 1904, by which they are read')
+            sentences.append(f'{log} its workbook counts days from 1904, by which they are read')
         if left_out := self._table.rows - self.gate.count - self.group.holes:
-            found.append(f'{log} {left_out} rows without a time are left out')
+            sentences.append(f'{log} {left_out} rows without a time are left out')
         if self.gate.late:
-            found.append(
+            sentences.append(
                 f'{log} {self.gate.late} rows are earlier than the row before, they were sorted'
             )
-        found += [f'{log} {self._spread.words}'] if self._spread else []
-        found += [f'{log} {self._even.words}'] if self._even else []
-        found += [f'{log} {one}' for one in self.gate.words()]
+        sentences += [f'{log} {self._spread.words}'] if self._spread else []
+        sentences += [f'{log} {self._even.words}'] if self._even else []
+        sentences += [f'{log} {one}' for one in self.gate.words()]
         if self._is_of_a_day and (days := int(self.gate.limits[1] // DAY)):
             midnights = counted(days, 'midnight')
-            found.append(f'{log} its times of day have no date and go on through {midnights}')
+            sentences.append(f'{log} its times of day have no date and go on through {midnights}')
         if self.count < 2:
-            return found
+            return sentences
         if gaps := self._steps.gaps():
             which = 'gap is' if gaps == 1 else 'gaps are'
-            found.append(
+            sentences.append(
                 f'{log} {gaps} {which} longer than {HUGE_GAP} rows, the longest is '
                 f'{self._steps.longest / SECOND:.4g} s, after row '
                 f'{self._steps.longest_row + self._table.first_row - 1}; nothing is judged in them'
             )
-        return found
+        return sentences
 
     def rows(self, show: Callable[[float], None] = lambda share: None) -> Iterator[Rows]:
         """Yield the rows that have a time in the order of it, in blocks; show how far it is."""
@@ -435,19 +435,19 @@ class Times:
 
     def _placed(self, names: Collection[str]) -> Iterator[Block]:
         """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
-        told = self._spread_out(names)
-        told = self._even.blocks(told) if self._even else told
-        yield from self._held(told) if self.group.hold else told
+        blocks = self._spread_out(names)
+        blocks = self._even.blocks(blocks) if self._even else blocks
+        yield from self._held(blocks) if self.group.hold else blocks
 
     def _spread_out(self, names: Collection[str]) -> Iterator[Block]:
-        told = self._known(names)
-        return self._spread.blocks(told) if self._spread else told
+        blocks = self._known(names)
+        return self._spread.blocks(blocks) if self._spread else blocks
 
-    def _held(self, told: Iterable[Block]) -> Iterator[Block]:
+    def _held(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks in which the rows before gaps within a run are repeated."""
         last = np.zeros(0), dict[str, Array]()
         usual = self.gate.step
-        for row, times, columns in told:
+        for row, times, columns in blocks:
             every = np.append(last[0], times)
             steps = np.diff(every)
             runs = np.searchsorted(self._run_begins, every, 'right')
@@ -534,8 +534,8 @@ class Times:
         cells = columns[self.group.time_columns[0]]
         factor, shift = SCALES[time.unit]
         shift += DAY * SINCE_1904 if self._is_from_1904 else 0.0
-        told = cells if midnights is None else midnights.passed(cells)
-        return days + line(told, time, factor) + shift
+        times = cells if midnights is None else midnights.passed(cells)
+        return days + line(times, time, factor) + shift
 
     def _stamps(self, times: Array) -> Stamps:
         """Return times [s] as stamps, from the first on, or from 1970 where the log tells it."""

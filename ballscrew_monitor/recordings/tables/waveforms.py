@@ -75,11 +75,11 @@ def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None])
         by_wave.setdefault(wave, []).append(name)
     bare, clocks = by_wave.pop(None, []), [wave for wave in by_wave if wave]
     starts = {wave.start for wave in clocks}
-    told = '; '.join(f'{STEP} = {wave.step:g} of {listed(by_wave[wave])}' for wave in clocks)
+    steps = '; '.join(f'{STEP} = {wave.step:g} of {listed(by_wave[wave])}' for wave in clocks)
     if len(clocks) > 1 and (bare or None in starts and len(starts) > 1):
         lacking = bare or [name for wave in clocks if wave.start is None for name in by_wave[wave]]
         raise Unreadable(
-            f'its waveforms begin or step apart, {told}, and {listed(lacking)} states no '
+            f'its waveforms begin or step apart, {steps}, and {listed(lacking)} states no '
             f'{STEP if bare else BEGIN}: write it into each channel, or save the signals as CSV '
             'with a column of the time'
         )
@@ -88,7 +88,7 @@ def _of_waveforms(held: Mapping[str, Any], waves: Mapping[str, Waveform | None])
     first = min(clocks, key=lambda wave: _begin(wave))
     start = '' if first.start is None else str(first.start + np.timedelta64(first.offset, 'ns'))
     if len(clocks) == 1:
-        unclear = f'{told}, none of {listed(bare)}' if bare else ''
+        unclear = f'{steps}, none of {listed(bare)}' if bare else ''
         period = math.nan if bare else first.step
         return Signals(
             frame=side_by_side(held),

@@ -74,8 +74,8 @@ def read_sheet(path: Path, name: str = '') -> Sheet:
     """Return a sheet of a workbook; raises InputError, ImportError without its reader."""
     importlib.import_module('fastexcel')  # it is optional
     hidden = _check_size(path)
-    cells, told = frame_apart(path, f'{__name__}:write_cells', sheet=name)
-    return Sheet(cells=cells, hidden=hidden, from_1904=_counts_from_1904(path), **told)
+    cells, facts = frame_apart(path, f'{__name__}:write_cells', sheet=name)
+    return Sheet(cells=cells, hidden=hidden, from_1904=_counts_from_1904(path), **facts)
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:

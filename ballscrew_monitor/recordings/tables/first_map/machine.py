@@ -59,8 +59,8 @@ def _set_temperature(draft: Draft, name: str) -> None:
             and names.is_of_the_screw(one.column)
         ):
             unit = unknown_unit(one.column, one.doubtful)
-            told = f'{short(one.column)} is in {short(unit)}, which is no unit of a temperature'
-            draft.ask(f'{name}.temperature_degC', f', or its column: {told}')
+            why = f'{short(one.column)} is in {short(unit)}, which is no unit of a temperature'
+            draft.ask(f'{name}.temperature_degC', f', or its column: {why}')
             return
     why = 'no column is the oil temperature of this axis'
     _set_by_head(draft, name, 'temperature_degC', TEMPERATURE, why)
@@ -90,8 +90,8 @@ def _set_lead(draft: Draft, name: str) -> None:
     if stated and not abs(lead * MILLI / stated.value - 1.0) > SAME_LEAD:
         _set_by_head(draft, name, 'lead_mm', math.nan, '')
     elif stated:
-        said = _statement(draft, 'lead_mm')
-        draft.ask(place, f': {said}, while position and speed agree at {lead * MILLI:.3g} mm')
+        statement = _statement(draft, 'lead_mm')
+        draft.ask(place, f': {statement}, while position and speed agree at {lead * MILLI:.3g} mm')
     elif math.isfinite(lead) and abs(lead / usual - 1.0) > SAME_LEAD:
         position, speed = (draft.log.axes[name][kind].column for kind in ('position', 'speed'))
         draft.ask(

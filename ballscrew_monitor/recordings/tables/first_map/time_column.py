@@ -194,21 +194,21 @@ class TimeColumn:
                 for each, factor in conversions.TIME_UNITS.items()
                 if 0.95 / RATE <= step * factor <= 1.0 / estimates.SLOWEST
             ]
-            told = f': in {", in ".join(rates)}' if rates else ''
+            words = f': in {", in ".join(rates)}' if rates else ''
             if math.isfinite(period := self._log.head.period):
-                told += (
+                words += (
                     f'; the head states a period of {period:.4g} s: unit s, and a scale of '
                     f'{period / step:.4g} makes of them'
                 )
             self._draft.unstated.append(
                 f'state time.unit in the map: column {one.column} states none that is known; its '
-                f'rows are {step:.3g} apart, which may be of any{told}'
+                f'rows are {step:.3g} apart, which may be of any{words}'
             )
         if why:
             self._draft.assume('time.unit', unit, f'{one.column} states none that is known; {why}')
         if unit == 'spreadsheet_days' and not self._log.source.sheet:
-            told = f'{one.column} holds days of a spreadsheet, taken to count from 1900'
-            self._draft.assume('time.offset', 0.0, f'{told}; {SINCE_1904} if from 1904')
+            words = f'{one.column} holds days of a spreadsheet, taken to count from 1900'
+            self._draft.assume('time.offset', 0.0, f'{words}; {SINCE_1904} if from 1904')
         if not unit or not estimates.is_universal(known, unit):
             of_day = one.column in self._log.timed
             self._set_epoch(
@@ -298,16 +298,16 @@ class TimeColumn:
                         log.data[chosen['position'].column] * LINEAR_POSITION_UNITS[position],
                         log.data[chosen['speed'].column] * LINEAR_SPEED_UNITS[speed],
                     )
-        found = estimates.period(list(motions.values()))
+        period = estimates.period(list(motions.values()))
         why = '; '.join(log.not_times or ['no column is named as a time', *self._rising()])
         if unclear := log.head.unclear_period:
             why += (
                 f'; the head says {short(repr(unclear))}, which may be the time of something else '
                 'than rows'
             )
-        if math.isfinite(found):
+        if math.isfinite(period):
             why += (
-                f'; at {1.0 / found:.3g} Hz the speeds of axes {", ".join(motions)} make their '
+                f'; at {1.0 / period:.3g} Hz the speeds of axes {", ".join(motions)} make their '
                 'positions best'
             )
         draft.unstated.append(f'state time.rate_Hz in the map, the rows in a second: {why}')

@@ -51,8 +51,8 @@ def set_unit(draft: Draft, name: str, kind: str) -> None:
     if 'unit' in place:
         return
     if stated == RATED and 0.0 < np.nanmax(np.abs(draft.log.extremes[place['column']])) <= 1.0:
-        told = f'{place["column"]} holds {_largest(draft.log.extremes[place["column"]])} at most'
-        draft.ask(f'{name}.{kind}.unit', f": {told}: '%', with scale 100 beside if 1 means 100 %")
+        most = f'{place["column"]} holds {_largest(draft.log.extremes[place["column"]])} at most'
+        draft.ask(f'{name}.{kind}.unit', f": {most}: '%', with scale 100 beside if 1 means 100 %")
         return
     if stated:
         place['unit'] = stated
@@ -95,17 +95,17 @@ def _of_temperature(draft: Draft, name: str, column: str) -> tuple[str, str]:
     """Return the unit of a temperature and why, which is said; or why the map must state it."""
     least, most = draft.log.extremes[column]
     coldest, hottest = NUMBERS['temperature_degC']
-    told = f'its values are {least:.3g} to {most:.3g}'
+    span = f'its values are {least:.3g} to {most:.3g}'
     if WARM <= least and most <= hottest:
-        return '', f'{column} states none and may be in degF, {told}: unit degC, {OF_DEGF}'
+        return '', f'{column} states none and may be in degF, {span}: unit degC, {OF_DEGF}'
     unit = 'degC' if coldest <= least and most <= hottest else 'K' if least > hottest else ''
     if not unit:
-        return '', f'{column} states none that is known, and {told}'
+        return '', f'{column} states none that is known, and {span}'
     draft.notes.append(
         f'axis {name}: {short(column)} states no unit of a temperature: it is read in {unit}, '
-        f'{told}'
+        f'{span}'
     )
-    return unit, told
+    return unit, span
 
 
 def _of_joint(draft: Draft, name: str, kind: str) -> str:
@@ -121,8 +121,8 @@ def _of_load(draft: Draft, name: str, column: str) -> str:
     """Return why the unit of a force is open, and what the load may be of instead."""
     log, chosen = draft.log, draft.log.axes[name]
     motors = [chosen[kind] for kind in MOTOR if kind in chosen]
-    told = (one for one in motors if not estimates.is_silent(log.extremes[one.column]))
-    motor = next(told, None)
+    moving = (one for one in motors if not estimates.is_silent(log.extremes[one.column]))
+    motor = next(moving, None)
     instead = ''
     if motor:
         kind, unit = motor.kind, motor.unit or next(iter(UNITS[motor.kind]))
@@ -175,9 +175,9 @@ def _of_speed(draft: Draft, name: str, column: str) -> tuple[str, str]:
         for unit, lead in leads.items()
         if least <= lead <= most
     )
-    told = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
+    way = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
     may = f', as it would in {fits}' if fits else ''
-    return '', f'{column} states none that is known, and {position.column} moves {told}{may}'
+    return '', f'{column} states none that is known, and {position.column} moves {way}{may}'
 
 
 def _of_position(draft: Draft, name: str, column: str) -> tuple[str, str]:

@@ -47,13 +47,13 @@ def _ask_for_dropouts(draft: Draft, name: str, kind: str) -> None:
     held = {*(one.column for one in log.inputs), *log.timed}
     others = [name for name in log.source.names() if name not in held]
     mark, cells = column_of(lost, log.source.blocks(others)) if others else ('', [])
-    told = f', while {short(mark)} is one of {listed(cells)}' if mark else ''
+    beside = f', while {short(mark)} is one of {listed(cells)}' if mark else ''
     at = int(np.argmax(lost))
     draft.ask(
         f'{name}.{kind}.valid',
         f', the column and its cells by which {short(column)} is valid, or leave those cells '
         f'empty: it jumps to {values[at]:g} in row {log.first_row + at} and back after '
-        f'{np.count_nonzero(lost)} rows{told}; take valid out of the map if it is so',
+        f'{np.count_nonzero(lost)} rows{beside}; take valid out of the map if it is so',
         {'column': mark or None, 'cells': None},
     )
 
