@@ -77,7 +77,8 @@ def read_json(path: Path) -> Signals:
             left_out = dict.fromkeys(sorted(nested), OF_LISTS)
             periods = _stated_periods(content)
             return signals_of(lists, content, periods, left_out=left_out)
-        chosen = max(records, key=lambda name: _motion_of(lists[name]))
+        named = {key: sum(bool(read_name(name).kind) for name in lists[key][0]) for key in records}
+        chosen = max(records, key=named.__getitem__)
         factors = ', '.join(stated_factors(content))
         content = _plain_table(lists[chosen])
         others = [name for name in records if name != chosen]
@@ -208,11 +209,6 @@ def _stated_periods(content: Content) -> dict[str, float]:
             period = period_of(f'{value:.12g} {unit}')
             periods |= {key: period} if math.isfinite(period) else {}
     return periods
-
-
-def _motion_of(records: Sequence[Any]) -> int:
-    """Return how many fields of records name a quantity."""
-    return sum(bool(read_name(name).kind) for name in records[0]) if records else 0
 
 
 def _first(content: Mapping[str, Any], keys: Sequence[str]) -> Any:

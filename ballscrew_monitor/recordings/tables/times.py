@@ -260,7 +260,7 @@ class Times:
         self._tail = np.zeros(0)
         with shown(table.rows, 'times looked through') as show:
             names = group.time_columns or list(group.columns)[:1]
-            for row, every, _, holes in self._told_with_holes(names):
+            for row, every, _, holes in self._timed(names):
                 times = _samples(every, holes)
                 known = np.isfinite(times)
                 rows = row + np.flatnonzero(known)
@@ -434,7 +434,7 @@ class Times:
             yield Rows(stamps=self._stamps(times), columns=columns)
 
     def _placed(self, names: Collection[str]) -> Iterator[Block]:
-        """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
+        """Yield blocks as `_sampled` does, with known times alone, in their runs and spread."""
         blocks = self._spread_out(names)
         blocks = self._even.blocks(blocks) if self._even else blocks
         yield from self._held(blocks) if self.group.hold else blocks
@@ -469,7 +469,7 @@ class Times:
     def _known(self, names: Collection[str]) -> Iterator[Block]:
         starts = np.array(sorted(self._shifts), dtype=np.int64)
         shifts = np.array([0.0, *(self._shifts[one] for one in starts.tolist())])
-        for row, times, columns in self._told(names):
+        for row, times, columns in self._sampled(names):
             known = np.isfinite(times)
             if len(starts):
                 rows = row + np.arange(len(times))
@@ -488,15 +488,15 @@ class Times:
         reading = self._table.readings[self.group.time_columns[0]]
         return reading.is_time and is_of_a_day(reading.extremes)
 
-    def _told(self, names: Collection[str]) -> Iterator[Block]:
+    def _sampled(self, names: Collection[str]) -> Iterator[Block]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
-        for row, times, block, holes in self._told_with_holes(names):
+        for row, times, block, holes in self._timed(names):
             yield row, _samples(times, holes), block
 
-    def _told_with_holes(
+    def _timed(
         self, names: Collection[str]
     ) -> Iterator[tuple[int, Array, dict[str, Array], NDArray[np.bool_] | None]]:
-        """Yield blocks as `_told` does, with the times of all rows, and which have no sample."""
+        """Yield blocks as `_sampled` does, with all times, and which rows have no sample."""
         row, midnights = 0, Midnights() if self._is_of_a_day else None
         for block, holes in self._table.blocks_with_holes(names, self.group.hollow):
             times = self._times(block, row, midnights)
