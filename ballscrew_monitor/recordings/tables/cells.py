@@ -293,6 +293,9 @@ class Cells:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
         numbers = _finite(_points, cells, self._none)
         pointed = _holds(cells, '.')
+        if not self.signs.shows('.') and not pointed.all():
+            whole = np.where(np.isfinite(numbers), np.abs(numbers), -math.inf)[~pointed]
+            self.signs.most_whole = max(self.signs.most_whole, float(whole.max()))
         if np.isfinite(numbers).all():  # none of them holds a comma
             read = points.take(numbers, cells, self._row)
             if not pointed.any():

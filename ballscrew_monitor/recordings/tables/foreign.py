@@ -186,7 +186,8 @@ class Kind:
     A kind of file: how it begins, what it must be, and the reader of all its signals.
 
     A library reads one that `is_binary`. Signals that are `grouped` are called as `run.speed`.
-    `names` finds those of cells in a text, whose records may be of more memory than it has bytes.
+    Numbers in texts have a point in one that `is_pointed` by its rules. `names` finds those of
+    cells in a text, whose records may be of more memory than it has bytes.
 
     """
 
@@ -195,6 +196,7 @@ class Kind:
     read: Callable[[Path], Signals]
     is_binary: bool = False
     is_grouped: bool = False
+    is_pointed: bool = False
     names: re.Pattern[bytes] | None = None
 
 
@@ -237,17 +239,20 @@ KINDS = {
         begins=lambda head: _text(head).startswith(b'<'),
         expected='a trace with signals, frames and a record for each time',
         read=_xml,
+        is_pointed=True,
         names=re.compile(rb'([^\s=<>"\']+)\s*=\s*["\']'),
     ),
     'shdr': Kind(
         begins=_is_shdr,
         expected='lines of an MTConnect adapter, a time and pairs of a name and a value each',
         read=line_messages.read_shdr,
+        is_pointed=True,
     ),
     'echo': Kind(
         begins=lambda head: line_messages.is_echo(long_form.first_lines(head)),
         expected='the messages of one topic, a line each with numbers for all of its joints',
         read=lambda path: Signals(frame=line_messages.read_echo(path)),
+        is_pointed=True,
     ),
     'long': Kind(
         begins=lambda head: long_form.long_form(long_form.first_lines(head)) is not None,

@@ -31,8 +31,6 @@ from surrogate.files import InputError
 SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
 PIECE, MOST_ROWS = 2048, 150_000  # rows of a piece of a sample, and of all of its pieces
 WORD, ROW = r'^\s*"?[\[(]?\p{L}', '\0row'
-SURE_BETWEEN = ('', ',')
-"""Separators of cells whose sign is decimal if the log does not show the other one."""
 
 
 class Sample:
@@ -56,6 +54,12 @@ class Sample:
                 self._every *= 2
                 self._pieces = [one for one in self._pieces if one[0] % self._every == 0]
                 self._rows = sum(len(next(iter(columns.values()))) for _, columns in self._pieces)
+
+    def texts(self, name: str) -> pl.Series:
+        """Return the cells of a column that were read as texts."""
+        held = [columns[name] for _, columns in self._pieces]
+        texts = [cells for cells in held if cells.dtype == pl.String]
+        return pl.concat(texts) if texts else pl.Series(dtype=pl.String)
 
     def numbers(self, name: str, reading: Reading) -> Array:
         """Return the numbers of a column."""
@@ -204,9 +208,14 @@ def look_through(
         if name in left_out:
             continue
         with _left_out(name, left_out, optional):
+            if name in source.numeric:
+                readings[name] = cells.reading('.', shown_order)
+                continue
             readings[name] = cells.reading(decision.sign, shown_order)
             for sign, doubt in decision.doubt(cells.where, cells.signs).items():
                 doubts.setdefault(sign, doubt)
+            if fault := cells.signs.fault(sample.texts(name), decision.sign):
+                doubts.setdefault('.', f'{cells.where} {fault}')
             if not shown_order and (doubt := cells.doubt()):
                 doubts.setdefault('order', doubt)
     return Table(
@@ -261,7 +270,11 @@ def _short_rows(source: Source, rows: int) -> list[str]:
 
 def _decided(source: Source, columns: Mapping[str, Cells], decision: Decision) -> list[str]:
     """Return in a sentence by what numbers are read that could be others, if there are any."""
-    cells = [one.signs.doubtful for one in columns.values() if one.signs.doubtful]
+    cells = [
+        one.signs.doubtful
+        for name, one in columns.items()
+        if one.signs.doubtful and name not in source.numeric
+    ]
     if not cells or not decision.words:
         return []
     sign, cell = next(iter(cells[0].items()))
@@ -283,21 +296,23 @@ def _decision(source: Source, columns: Mapping[str, Cells], stated: str) -> Deci
     """
     Return the decimal sign of a table; columns that are not read are asked where others doubt.
 
-    Cells of a workbook are numbers, and those between commas have a decimal point.
+    True numbers of a workbook tell nothing about texts. Between commas a point is decimal, but for
+    a column of 5.400 beside 60, where no rule of decimals leaves the zeros out.
 
     """
     head = source.head
     if 'decimal' in head.properties and not stated:
         text = head.properties['decimal'].text.strip()
         stated = text if text in OTHER_SIGN else {'comma': ',', 'point': '.'}.get(text.lower(), '')
-    signs = {name: cells.signs for name, cells in columns.items()}
-    usual = '.' if head.separator in SURE_BETWEEN else ''
+    signs = {name: cells.signs for name, cells in columns.items() if name not in source.numeric}
+    is_usual = head.separator == ',' and not any(one.may_part for one in signs.values())
+    usual = '.' if is_usual or source.is_pointed else ''
     decision = decide(signs, stated, usual)
     if decision.proofs or stated or not any(one.doubtful for one in signs.values()):
         return decision
     first = source.first_rows()
     for name in source.names():
-        if name not in columns and first[name].dtype == pl.String:
+        if name not in {*columns, *source.numeric} and first[name].dtype == pl.String:
             cells = Cells(source.path, name, first_row=head.first)
             cells.add(first[name])
             numbers = [one.good for one in cells.numbers]

@@ -19,6 +19,7 @@ from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.heads import factor_word, Head, Property, unlike
 from ballscrew_monitor.recordings.tables.layouts import Format, LONGEST_PERIOD, OTHER_ROWS
 from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.signs import signless
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, words_of
 import numpy as np
 import polars as pl
@@ -153,12 +154,19 @@ def side_by_side(columns: Columns) -> pl.DataFrame:
     height = max(by_length, default=0)
     check_room(height, len(columns))
     series = [
-        pl.Series(name, column, strict=False).extend_constant(None, height - length)
+        pl.Series(name, _told_apart(column), strict=False).extend_constant(None, height - length)
         for length in by_length
         for name, column in columns.items()
         if len(column) == length
     ]
     return pl.DataFrame(series)
+
+
+def _told_apart(column: Any) -> Any:
+    """Return cells, numbers beside texts so that they show no decimal sign for these."""
+    if not isinstance(column, list) or not {str, float} <= {*map(type, column)}:
+        return column
+    return [signless(cell) if isinstance(cell, float) else cell for cell in column]
 
 
 def behind_times(groups: Sequence[tuple[Any, Columns]]) -> dict[str, Any]:

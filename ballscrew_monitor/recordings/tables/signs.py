@@ -10,6 +10,7 @@ numbers of a table.
 
 from collections.abc import Mapping
 import dataclasses
+import math
 import re
 
 from ballscrew_monitor.recordings.tables.numerals import plain_numerals
@@ -22,6 +23,8 @@ import polars as pl
 NAMES = {'.': 'point', ',': 'comma'}
 
 
+THOUSAND = 1000
+FIXED = 3  # digits behind a sign that may part thousands
 MARKS = r"[ '’\u00a0\u202f\ufffd]"
 """What parts thousands besides a sign: blanks of whatever width, and apostrophes."""
 MINUS, PLUS = '-\u2212\u2013', '+'
@@ -65,6 +68,14 @@ def _decimal(sign: str) -> str:
 _DECIMAL = {sign: _decimal(sign) for sign in OTHER_SIGN}
 
 
+def signless(number: float) -> str:
+    """Return a number as a text that holds no decimal sign, such as 605e-1."""
+    digits, mark, exponent = repr(number).partition('e')
+    whole, _, part = digits.partition('.')
+    power = int(exponent or 0) - len(part)
+    return repr(number) if not math.isfinite(number) or not part else f'{whole}{part}e{power}'
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class _Cell:
     """The text of a cell, and its row in the file."""
@@ -97,6 +108,8 @@ class Signs:
         self.counts = dict.fromkeys(OTHER_SIGN, 0)
         self._sure: dict[str, _Cell] = {}
         self._doubtful: dict[str, _Cell] = {}
+        self.most_whole = -math.inf
+        """The largest number without a sign beside them, as far as it was looked for."""
 
     def look(self, texts: pl.Series, row: int) -> None:
         """Look at further cells that hold a sign, the first of them in a row of the file."""
@@ -117,6 +130,42 @@ class Signs:
     def first(self, sign: str) -> str:
         """Return in words the first cell that surely has a decimal sign."""
         return self._sure[sign].words
+
+    def fault(self, texts: pl.Series, decided: str) -> str:
+        """
+        Return how cells of a column contradict the sign that it shows, empty if they do not.
+
+        A 1.480 beside 60.0 is written by no rule of decimals, which matters where the table has
+        another sign, or has `decided` on none.
+
+        """
+        sign = next((sign for sign in self._sure if sign in self._doubtful), '')
+        if not sign or len(self._sure) > 1 or sign == decided:
+            return ''
+        plain, mark = plain_numerals(texts), re.escape(sign)
+        digits = plain.str.strip_chars().str.extract(rf'{mark}(\d+)$').str.len_chars()
+        ends = plain.str.contains(r'0\s*$')
+        padded, others = (
+            are(plain, pattern) & found.fill_null(False).to_numpy()
+            for pattern, found in ((thousands(sign), ends), (_DECIMAL[sign], digits != FIXED))
+        )
+        if not padded.any() or not others.any():
+            return ''
+        cell, other = (
+            _Cell(text=texts[int(found.argmax())].strip(), row=0) for found in (padded, others)
+        )
+        number = cell.number(decimal=True, sign=sign)
+        return (
+            f'holds {short(repr(cell.text))}, which is {cell.readings(sign)}, for it also holds '
+            f'{short(repr(other.text))}, and the {NAMES[OTHER_SIGN[sign]]} is decimal elsewhere'
+            f": state `decimal: '{sign}'` in the map if it is {number}"
+            ', else write the column with one decimal sign'
+        )
+
+    @property
+    def may_part(self) -> bool:
+        """Return True if numbers below 1000 stand without a point beside 5.400 and the like."""
+        return '.' in self.doubtful and 0.0 <= self.most_whole < THOUSAND
 
     @property
     def doubtful(self) -> dict[str, _Cell]:

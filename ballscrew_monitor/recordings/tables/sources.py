@@ -127,7 +127,8 @@ class Source:
     groups hold, `arrays` how many those whose rows nothing but a time ties to others; `notes` say
     what is odd about it. Names of a source that `is_grouped` begin with that of a group. `none`
     are the numbers of columns that stand for no value, `short` the rows of too few cells since it
-    began.
+    began. The columns `numeric` hold true numbers, whose texts the reader has made; in a form that
+    `is_pointed` by its rules, texts that show no decimal sign have a point.
 
     """
 
@@ -146,6 +147,8 @@ class Source:
     is_grouped: bool = False
     none: Mapping[str, Sequence[float]] = dataclasses.field(default_factory=dict)
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
+    numeric: frozenset[str] = frozenset()
+    is_pointed: bool = False
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -167,7 +170,10 @@ class Source:
         arrays = {renamed.get(name, name): count for name, count in self.arrays.items()}
         head, read = self.head.renamed(renamed), plainly(self.read, columns)
         lengths = {renamed.get(name, name): count for name, count in self.lengths.items()}
-        return dataclasses.replace(self, head=head, read=read, arrays=arrays, lengths=lengths)
+        numeric = frozenset(renamed.get(name, name) for name in self.numeric)
+        return dataclasses.replace(
+            self, head=head, read=read, arrays=arrays, lengths=lengths, numeric=numeric
+        )
 
     def joined(self) -> 'Source':
         """Return it with one column of times in the place of several with their parts."""
@@ -284,6 +290,7 @@ def _source_of(path: Path, layout: Layout | None, sheet: str) -> Source:
             lengths=dict(zip(source.names(), lengths, strict=True)) if is_grouped else {},
             arrays=dict(zip(source.names(), map(signals.arrays.get, frame.columns), strict=True)),
             short=ShortRows(count=len(empty), first=empty[0]) if empty else ShortRows(),
+            is_pointed=foreign.KINDS[kind].is_pointed,
         )
         texts = frame.head(LINES).select(pl.col(pl.String).fill_null('')).to_dict()
         cells = dict(zip(frame.columns, source.names(), strict=True))
@@ -453,6 +460,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
         from_1904=sheet.from_1904,
         left_out=sheet.others,
         more_rows=sheet.more_rows,
+        numeric=frozenset(head.names[at] for at in sheet.numeric if at < len(head.names)),
         notes=tuple(notes[: sheet.hidden]),
     )
     return source.plain(heads.cells_of(lines, head))

@@ -25,6 +25,7 @@ import zipfile
 import zlib
 
 from ballscrew_monitor.recordings.tables.apart import frame_apart
+from ballscrew_monitor.recordings.tables.cell_kinds import with_kinds
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import find_head, holds_numbers, Line
 from ballscrew_monitor.recordings.tables.names import axis_of_all
@@ -58,7 +59,8 @@ class Sheet:
     A sheet: its name, its cells, and why each other sheet of its workbook is not read.
 
     `more_rows` are those of the others that have its names, `hidden` those of all that nobody
-    sees. Days of its workbook count from 1904 if it is `from_1904`, else from 1900.
+    sees, `numeric` the numbers of columns without a text that may be a number. Days of its
+    workbook count from 1904 if it is `from_1904`, else from 1900.
 
     """
 
@@ -66,6 +68,7 @@ class Sheet:
     cells: pl.DataFrame
     others: Mapping[str, str]
     more_rows: int = 0
+    numeric: Sequence[int] = ()
     hidden: int = 0
     from_1904: bool = False
 
@@ -93,11 +96,12 @@ def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
     for name, fewest in tried:
         cells = _texts(path, name)
         if only or (cells.width > 1 and holds_numbers(lines_of(cells), fewest)):
+            cells, numeric = with_kinds(path, names.index(name), cells)
             cells.write_ipc(inputs['target'])
             del others[name]
             of_axis = [other for other in others if axis_of_all(other) == axis_of_all(name)]
             more = sum(_rows_alike(cells, path, other) for other in of_axis)
-            return {'name': name, 'others': others, 'more_rows': more}
+            return {'name': name, 'others': others, 'more_rows': more, 'numeric': numeric}
         others[name] = f'it has fewer than {fewest} rows of numbers'
     raise InputError(f'log {path}: no sheet has rows of numbers, {_held(names)}')
 

@@ -7,6 +7,7 @@ The true numbers are those that are written here, with one decimal sign in all o
 
 """
 
+import json
 import math
 from pathlib import Path
 import tempfile
@@ -16,9 +17,12 @@ from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.signs import signless
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
+import openpyxl
+import polars as pl
 import pytest
 from surrogate.files import InputError
 
@@ -118,13 +122,90 @@ def test_no_number_is_another_one(values, sign, separator, digits, parted):
 @pytest.mark.parametrize('block', [1, 2, 99])
 @pytest.mark.parametrize(
     ('shown', 'expected'),
-    [('12.35', 12.35), ('0.125', 0.125), ('5.4e3', 5400.0), ('1234.567', 1234.567), ('.5', 0.5)],
+    [('0.125', 0.125), ('5.4e3', 5400.0), ('1234.567', 1234.567), ('1.2345', 1.2345)],
 )
 def test_a_column_that_shows_its_sign_is_read_by_it(read, monkeypatch, shown, expected, block):
     monkeypatch.setattr(sources, 'BLOCK', block)
-    columns = {'t': ['0,1', '0,2'], 'v': ['5.400', shown]}
+    columns = {'t': ['0,1', '0,2'], 'v': ['5.432', shown]}
     for decimal in ('', ',', '.'):
-        assert read(columns, decimal=decimal)['v'].tolist() == [5.4, expected]
+        assert read(columns, decimal=decimal)['v'].tolist() == [5.432, expected]
+
+
+@pytest.mark.parametrize('shown', ['1480.0', '12.35', '.5', '60.0'])
+def test_numbers_of_two_writings_in_one_column_are_refused(read, refused, shown):
+    columns = {'t': ['0,1', '0,2'], 'v': ['5.400', shown]}
+    for decimal in ('', ','):
+        refused('two_writings', read, columns, decimal=decimal)
+    assert read(columns, decimal='.')['v'].tolist() == [5.4, float(shown)]
+    alone = {'t': ['0.1', '0.2'], 'v': ['5.400', shown]}  # four digits of a meter
+    assert read(alone)['v'].tolist() == [5.4, float(shown)]
+
+
+def test_whole_numbers_between_commas_show_that_a_point_may_part_thousands(read, refused):
+    columns = {'t': ['0', '10', '20'], 'v': ['0', '-910', '5.400']}
+    refused('whole', read, columns, separator=',')
+    assert read(columns, decimal='.', separator=',')['v'].tolist() == [0.0, -910.0, 5.4]
+    assert read(columns, decimal=',', separator=',')['v'].tolist() == [0.0, -910.0, 5400.0]
+    for shown in ('12.5', '0.125', '1480', '.5'):  # 1480 has no sign where it could have
+        true = [0.0, float(shown), 5.4]
+        assert read(columns | {'v': ['0', shown, '5.400']}, separator=',')['v'].tolist() == true
+    columns['w'] = ['-12.345', '0.000', '5.400']
+    assert read(columns, separator=',')['v'].tolist() == [0.0, -910.0, 5.4]
+
+
+@pytest.fixture(scope='module')
+def container(tmp_path_factory):
+    """Return a function that writes columns of numbers and texts to a file of a kind."""
+
+    def write(kind, columns):
+        path = tmp_path_factory.mktemp('container') / f'log.{kind}'
+        cells = [*zip(*columns.values(), strict=True)]
+        rows = [dict(zip(columns, row, strict=True)) for row in cells]
+        if kind == 'xlsx':
+            book = openpyxl.Workbook()
+            for row in [list(columns), *cells]:
+                book.active.append(row)
+            book.save(path)
+        elif kind == 'parquet':
+            pl.DataFrame(columns).write_parquet(path)
+        elif kind == 'json':
+            path.write_text(json.dumps(rows))
+        else:
+            path.write_text(''.join(f'{json.dumps(row)}\n' for row in rows))
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize('kind', ['xlsx', 'parquet', 'json', 'jsonl'])
+def test_true_numbers_prove_no_sign_of_texts(kind, container, refused):
+    times, texts = [0.25, 0.5, 0.75], ['0', '-5.400', '12.000']
+    log = container(kind, {'t': times, 'v': texts})
+    refused('true_numbers', open_table, log, ['t', 'v'])
+    for decimal, scale in (('.', 1.0), (',', 1000.0)):
+        found = open_table(log, ['t', 'v'], decimal=decimal).head(9)
+        assert found['v'].tolist() == [0.0, -5.4 * scale, 12.0 * scale]
+        assert found['t'].tolist() == times
+    for shown, true in (('0,5', 5400.0), ('0.5', 5.4)):
+        log = container(kind, {'t': times, 'v': ['5.400', '7', shown]})
+        assert open_table(log, ['t', 'v']).head(9)['v'][0] == true
+
+
+@pytest.mark.parametrize('kind', ['xlsx', 'json', 'jsonl'])
+def test_true_numbers_among_texts_prove_none_either(kind, container, refused):
+    numbers = ['1.480', -910.5, 60.125, 1e-9, 3]
+    log = container(kind, {'t': [0.25, 0.5, 0.75, 1.0, 1.25], 'v': numbers})
+    refused('among_texts', open_table, log, ['t', 'v'])
+    for decimal, first in (('.', 1.48), (',', 1480.0)):
+        found = open_table(log, ['t', 'v'], decimal=decimal).head(9)
+        assert found['v'].tolist() == [first, *numbers[1:]]
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_without_a_sign_is_the_same(number):
+    text = signless(number)
+    assert float(text) == number
+    assert '.' not in text
 
 
 @pytest.mark.parametrize('separator', ';\t')

@@ -1,0 +1,172 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Kinds of the cells of a sheet: its reader makes texts of all, and nothing of errors.
+
+An error such as #N/A is an unknown value, where an empty cell is no sample. A cell that is shown
+as 52 % holds 0.52. A text that may be a number has the decimal sign of whoever wrote it, a true
+number has none.
+
+"""
+
+from collections.abc import Iterator
+import dataclasses
+from pathlib import Path
+import posixpath
+import re
+import sys
+import zipfile
+
+from ballscrew_monitor.recordings.tables.signs import signless
+import polars as pl
+from surrogate.files import InputError
+
+TAG = re.compile(
+    rb'<(?:\w+:)?(?:(?P<row>row)|c)(?=[\s/>])(?P<told>[^>]*?)(?P<empty>/?)>(?P<bare>\s*</)?'
+)
+"""The beginning of a row, or of a cell; one that is empty, or ends at once, has no value."""
+REFERENCE = re.compile(rb'\br\s*=\s*["\']([A-Za-z]*)(\d+)["\']')
+KIND = re.compile(rb'\bt\s*=\s*["\'](s|str|inlineStr|e)["\']')
+STYLE = re.compile(rb'\bs\s*=\s*["\'](\d+)["\']')
+VALUE = re.compile(rb'<(?:\w+:)?v\b[^>]*>([^<]*)<')
+BOOK, RELATIONS, STYLES = 'xl/workbook.xml', 'xl/_rels/workbook.xml.rels', 'xl/styles.xml'
+SHEET = re.compile(rb'<(?:\w+:)?sheet\s[^>]*?\w+:id\s*=\s*["\']([^"\']*)["\']')
+RELATION = re.compile(rb'<(?:\w+:)?Relationship\s([^>]*)>')
+FORMAT = re.compile(rb'<(?:\w+:)?numFmt\s([^>]*)>')
+CELL_FORMATS = re.compile(rb'<(?:\w+:)?cellXfs\b.*?</(?:\w+:)?cellXfs>', re.S)
+CELL_FORMAT = re.compile(rb'<(?:\w+:)?xf\b[^>]*?\bnumFmtId\s*=\s*["\'](\d+)["\']')
+PERCENT = {9, 10}
+"""Numbers of the formats 0% and 0.00%, which no workbook states."""
+LITERAL = re.compile(rb'&quot;.*?&quot;|"[^"]*"|\\.|_.')
+"""Parts of a format that are shown as they stand, or are blanks."""
+MAY_BE_NUMBER = r'^[^\p{L}]*\d[^\p{L}]*[.,][^\p{L}]*$|^[^\p{L}]*[.,]\d[^\p{L}]*$'
+LETTERS = 26
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class _Kinds:
+    """Rows of the texts, errors and shares of a sheet by their columns; its first row, column."""
+
+    texts: dict[int, list[int]] = dataclasses.field(default_factory=dict)
+    errors: dict[int, dict[int, str]] = dataclasses.field(default_factory=dict)
+    shares: dict[int, list[int]] = dataclasses.field(default_factory=dict)
+    first: list[int] = dataclasses.field(default_factory=lambda: [sys.maxsize] * 2)
+    last: list[int] = dataclasses.field(default_factory=lambda: [0, 0])
+
+
+def with_kinds(path: str, number: int, cells: pl.DataFrame) -> tuple[pl.DataFrame, list[int]]:
+    """
+    Return a sheet with its errors and per cents, and the columns whose numbers are true ones.
+
+    The sheet is that of a `number` in its workbook, from 0 on. Raises InputError where cells
+    cannot be told apart.
+
+    """
+    with zipfile.ZipFile(Path(path)) as archive:
+        kinds = _kinds(archive, number)
+    origin = kinds.first
+    shape = tuple(max(last - one, -1) + 1 for one, last in zip(origin, kinds.last, strict=True))
+    if shape != cells.shape and (kinds.errors or kinds.shares):
+        raise InputError(
+            f'log {path}: its errors or per cents stand in a sheet of {shape[0]} rows and '
+            f'{shape[1]} columns, its reader finds {cells.height} and {cells.width}: save the '
+            'sheet as CSV'
+        )
+    columns, numeric = [], []
+    for at, column in enumerate(cells):
+        place = at + origin[1]
+        rows = [row - origin[0] for row in kinds.texts.get(place, ())]
+        rows = [row for row in rows if 0 <= row < cells.height]
+        texts = column.gather(rows)
+        if texts.str.contains(MAY_BE_NUMBER).any():
+            column = _signless(column, rows)
+        else:
+            numeric.append(at)
+        shares = [row - origin[0] for row in kinds.shares.get(place, ())]
+        errors = {row - origin[0]: told for row, told in kinds.errors.get(place, {}).items()}
+        if shares:
+            column = column.scatter(shares, _percent(column.gather(shares)))
+        if errors:
+            column = column.scatter([*errors], [*errors.values()])
+        columns.append(column)
+    return pl.DataFrame(columns), numeric
+
+
+def _signless(column: pl.Series, texts: list[int]) -> pl.Series:
+    """Return the cells of a column, those but of some rows without decimal signs."""
+    others = column.clone().scatter(texts, [None] * len(texts))
+    rows = others.str.contains(r'^-?\d+\.\d+$').fill_null(False).arg_true()
+    return column.scatter(rows, [signless(float(cell)) for cell in column.gather(rows)])
+
+
+def _percent(cells: pl.Series) -> pl.Series:
+    """Return numbers as they are shown, 52 % for 0.52, and other cells as they stand."""
+    numbers = cells.cast(pl.Float64, strict=False)
+    shown = [None if one is None else f'{100.0 * one:.15g} %' for one in numbers]
+    return pl.Series(shown, dtype=pl.String).fill_null(cells)
+
+
+def _kinds(archive: zipfile.ZipFile, number: int) -> _Kinds:
+    """Return which cells of a sheet are texts, errors and shares."""
+    kinds, shares = _Kinds(), _shares(archive)
+    text = archive.read(_part(archive, number))
+    for row, column, match in _cells(text):
+        if match['empty'] or match['bare']:
+            continue
+        kinds.first = [min(kinds.first[0], row), min(kinds.first[1], column)]
+        kinds.last = [max(kinds.last[0], row), max(kinds.last[1], column)]
+        kind, style = KIND.search(match['told']), STYLE.search(match['told'])
+        if kind and kind[1] == b'e':
+            value = VALUE.match(text, match.end())
+            told = value[1].decode(errors='replace') if value else '#ERROR'
+            kinds.errors.setdefault(column, {})[row] = told
+        elif kind:
+            kinds.texts.setdefault(column, []).append(row)
+        elif style and int(style[1]) in shares:
+            kinds.shares.setdefault(column, []).append(row)
+    return kinds
+
+
+def _cells(text: bytes) -> Iterator[tuple[int, int, re.Match[bytes]]]:
+    """Yield row, column and beginning of each cell; one without reference follows the last."""
+    row = column = 0
+    for match in TAG.finditer(text):
+        place = REFERENCE.search(match['told'])
+        if match['row']:
+            row, column = int(place[2]) if place else row + 1, 0
+            continue
+        column += 1
+        if place:
+            row, column = int(place[2]), 0
+            for letter in place[1].upper():
+                column = LETTERS * column + letter - ord('A') + 1
+        yield row, column, match
+
+
+def _part(archive: zipfile.ZipFile, number: int) -> str:
+    """Return the name of the part that holds the cells of a sheet, by its number from 0 on."""
+    names = {name.lower(): name for name in archive.namelist()}
+    identity = SHEET.findall(archive.read(names[BOOK]))[number]
+    for relation in RELATION.findall(archive.read(names[RELATIONS])):
+        if _attribute(b'Id', relation) == identity:
+            target = _attribute(b'Target', relation).decode()
+            return names[posixpath.normpath(posixpath.join('/xl', target)).lower().strip('/')]
+    raise KeyError(identity.decode())
+
+
+def _shares(archive: zipfile.ZipFile) -> set[int]:
+    """Return the numbers of the styles that show a number in per cent."""
+    names = {name.lower(): name for name in archive.namelist()}
+    text = archive.read(names[STYLES]) if STYLES in names else b''
+    formats = PERCENT | {
+        int(_attribute(b'numFmtId', told))
+        for told in FORMAT.findall(text)
+        if b'%' in LITERAL.sub(b'', _attribute(b'formatCode', told))
+    }
+    styles = CELL_FORMAT.findall(b''.join(CELL_FORMATS.findall(text)))
+    return {at for at, number in enumerate(styles) if int(number) in formats}
+
+
+def _attribute(name: bytes, told: bytes) -> bytes:
+    match = re.search(rb'\b%s\s*=\s*(?:"([^"]*)"|\'([^\']*)\')' % name, told)
+    return (match[1] or match[2] or b'') if match else b''
