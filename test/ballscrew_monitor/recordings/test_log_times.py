@@ -128,6 +128,45 @@ def test_a_bag_with_log_times_of_zero_is_judged_as_far_as_without(short_bag, tmp
     assert last == usual
 
 
+@pytest.mark.parametrize('write', [in_mcap, in_sqlite, in_two_files])
+@pytest.mark.parametrize('where', ['start', 'middle', 'scattered'])
+@pytest.mark.parametrize('early', [1, 90 * SECOND, 300 * 86400 * SECOND])
+def test_log_times_near_zero_give_way_to_stamps(short_bag, tmp_path, says, where, write, early):
+    """A computer without a clock of its own begins at 1970, or when it was built."""
+    messages = list(Bag(short_bag).messages())
+    begin, count = messages[0].log_time, len(messages)
+    wrong = [
+        dataclasses.replace(one, log_time=one.log_time - begin + early)
+        if ZEROS[where](at, count)
+        else one
+        for at, one in enumerate(messages)
+    ]
+    path = write(tmp_path, wrong)
+    bag = Bag(path)
+    number = sum(one.log_time < begin for one in wrong)
+    assert bag.notes == [says('near_zero', bag=path, wrong=number, count=count)]
+    assert bag.duration == pytest.approx(Bag(short_bag).duration, abs=2 * NEAR)
+    before = {(one.topic, one.data): one.log_time for one in messages}
+    late = [abs(one.log_time - before[one.topic, one.data]) for one in bag.messages()]
+    assert len(late) == count
+    assert max(late) < NEAR * SECOND
+
+
+@pytest.mark.parametrize('early', [5 * SECOND, 946_684_800 * SECOND])
+def test_a_bag_whose_clock_was_set_with_its_stamps_is_refused(tmp_path, refused, early):
+    """A clock that begins at 1970 or 2000 stamps so as well."""
+    times = [early, early + SECOND, 1_767_600_000 * SECOND]
+    path = without_stamps(tmp_path, [(time, time) for time in times])
+    with refused('ten_years', bag=path, first=early // SECOND):
+        Bag(path)
+
+
+def test_ten_years_are_allowed(tmp_path):
+    times = [SECOND, round(10 * 365.25 * 86400) * SECOND + SECOND]
+    path = without_stamps(tmp_path, [(time, time) for time in times])
+    assert [one.log_time for one in Bag(path).messages()] == times
+
+
 def test_a_time_of_zero_is_right_where_simulated_time_begins(short_bag, tmp_path):
     begin = Bag(short_bag).start_time
     messages = [
