@@ -35,7 +35,11 @@ from ballscrew_monitor.recordings.tables.first_map.validity import ask_for_gaps,
 from ballscrew_monitor.recordings.tables.names import is_commanded, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
 from ballscrew_monitor.recordings.tables.sources import source_of
-from ballscrew_monitor.recordings.tables.stated_rate import doubts_of_rate
+from ballscrew_monitor.recordings.tables.stated_rate import (
+    doubts_of_rate,
+    rates_of_head,
+    two_rates,
+)
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -107,7 +111,7 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
         _fill(draft, times, name)
     stated = time.stated or time.without_column()
     if stated.get('rate_Hz'):
-        _ask_for_rate(draft, stated)
+        _ask_for_rate(draft, time, stated)
     ask_for_factors(draft)
     note_joined_tables(draft)
     note_unused(draft, {*stated.values(), *times.of_inputs.values()})
@@ -133,18 +137,23 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     )
 
 
-def _ask_for_rate(draft: Draft, stated: dict[str, Any]) -> None:
+def _ask_for_rate(draft: Draft, time: TimeColumn, stated: dict[str, Any]) -> None:
     """Leave the rate of the head without a value, and ask for it, if the rows deny it."""
+    table = draft.log.table
     inputs = {
         f'axes.{name}.{kind}': one['column']
         for name, kinds in draft.used.items()
         for kind, one in kinds.items()
         if kind in INPUTS and 'column' in one
     }
-    for doubt in doubts_of_rate(stated['rate_Hz'], inputs, draft.log.table):
-        draft.unstated.append(f'the head states {stated["rate_Hz"]:g} Hz, but {doubt}')
-        stated['rate_Hz'] = None
-        return
+    doubts = [two_rates(rates_of_head(table.source, {*inputs.values()}))]
+    doubts += [
+        f'the head states {stated["rate_Hz"]:g} Hz, but {doubt}'
+        for doubt in doubts_of_rate(stated['rate_Hz'], inputs, table)
+    ]
+    if why := next(filter(None, doubts), ''):
+        draft.unstated.append(why)
+        stated['rate_Hz'], time.step = None, math.nan
 
 
 def _fill(draft: Draft, times: OwnTimes, name: str) -> None:

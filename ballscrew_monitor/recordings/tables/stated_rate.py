@@ -8,13 +8,13 @@ their own. Columns that count samples and columns of times show both.
 
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import itertools
 import math
 
-from ballscrew_monitor.recordings.tables.cells import Array, Cells
+from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties
 from ballscrew_monitor.recordings.tables.estimates import NEAR, usual_step
 from ballscrew_monitor.recordings.tables.heads import are_names_again, Head, USUAL
 from ballscrew_monitor.recordings.tables.mapping import TableMap
@@ -63,6 +63,33 @@ def _is_even(values: Array) -> bool:
     return usual > 0.0 and bool(((steps >= least) & (steps <= most)).all())
 
 
+def rates_of_head(source: Source, columns: Collection[str]) -> tuple[float, ...]:
+    """
+    Return the rates of rows [Hz] that the period of a head may mean, none without one.
+
+    It is that of the rows. Where each signal stands on rows of its own, it may be that of the
+    signals as well.
+
+    """
+    if not math.isfinite(source.head.period):
+        return ()
+    cells = source.first_rows()
+    apart = [np.diff(np.flatnonzero(~empties(cells[name]))) for name in columns]
+    rows = min((float(np.median(steps)) for steps in apart if len(steps)), default=1.0)
+    return tuple(dict.fromkeys((1.0 / source.head.period, rows / source.head.period)))
+
+
+def two_rates(rates: Sequence[float]) -> str:
+    """Return in words which of two rates of rows [Hz] a period may mean, empty for one."""
+    if len(rates) < 2:
+        return ''
+    return (
+        f'state time.rate_Hz in the map: {rates[0]:.6g} if the period of {1.0 / rates[0]:.4g} s '
+        f'that the head states is that of the rows, {rates[1]:.6g} if it is that of each signal, '
+        f'whose values are {rates[1] / rates[0]:.3g} rows apart'
+    )
+
+
 def doubts_of_rate(rate: float, inputs: Mapping[str, str], table: Table) -> Iterator[str]:
     """
     Yield why the rows of a table are not at the equal distances of a rate [Hz].
@@ -71,6 +98,13 @@ def doubts_of_rate(rate: float, inputs: Mapping[str, str], table: Table) -> Iter
 
     """
     source = table.source
+    rates = rates_of_head(source, {*inputs.values()})
+    if rates and all(abs(rate / one - 1.0) > NEAR for one in rates):
+        yield (
+            f'its head states a period of {source.head.period:.4g} s, and time.rate_Hz of the map '
+            f'is {rate:.6g}: state time.rate_Hz: {" or ".join(f"{one:.6g}" for one in rates)}, or '
+            '`skip`, the lines before the names, by which the head is not read'
+        )
     torn, used = dataclasses.replace(source.short), {*inputs.values()}
     others = first_numbers(source, [name for name in source.names() if name not in used])
     counter = next((name for name, values in others.items() if _counts_samples(values)), '')
@@ -171,11 +205,10 @@ def _of_twins(inputs: Mapping[str, str], source: Source) -> Iterator[str]:
 
 
 def other_period(head: Head, mapping: TableMap, period: float) -> str:
-    """Return in a sentence how rows by a map differ from the period [s] of a head, if they do."""
-    if not math.isfinite(head.period) or abs(period / head.period - 1.0) <= NEAR:
+    """Return in a sentence how times by a map differ from the period [s] of a head, if so."""
+    if mapping.time is None or not abs(period / head.period - 1.0) > NEAR:
         return ''
-    key = 'time.rate_Hz' if mapping.time is None else 'time.column'
     return (
         f'the head states a period of {head.period:.4g} s, the rows are {period:.4g} s apart by '
-        f'{key} of the map, which decides'
+        'time.column of the map, which decides'
     )

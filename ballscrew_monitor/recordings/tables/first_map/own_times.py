@@ -109,7 +109,8 @@ class OwnTimes:
         """Return the usual time between samples of a column [s], by a column of a time."""
         log, of_log = self._log, self._time
         if math.isnan(of_log.unit) or time not in log.data:
-            return of_log.step
+            rows = np.diff(np.flatnonzero(np.isfinite(log.data[column])))
+            return of_log.step * (float(np.median(rows)) if len(rows) else 1.0)
         values = log.data[time][np.isfinite(log.data[column])]
         return row_step(values[np.isfinite(values)]) * of_log.unit
 

@@ -192,7 +192,9 @@ def test_times_of_one_name_that_are_the_same_leave_the_rate_alone(tmp_path):
 
 
 @pytest.mark.parametrize(('stated', 'period'), [('200 Hz', 0.005), ('100 Hz', None)])
-def test_a_head_of_another_rate_than_the_times_is_asked_about(stated, period, tmp_path, says):
+def test_a_head_of_another_rate_than_the_times_is_asked_about(
+    stated, period, tmp_path, says, refused
+):
     path = tmp_path / 'log.csv'
     lines = [f'{one:.2f};{speed:.4f};-300' for one, speed in zip(TIME, SPEED, strict=True)]
     path.write_text(f'# Sample rate: {stated}\nTime [s];X speed [mm/s];X force [N]\n')
@@ -203,10 +205,54 @@ def test_a_head_of_another_rate_than_the_times_is_asked_about(stated, period, tm
     made.content['time']['column'] = 'Time [s]'
     made.content['axes']['x']['load']['magnitude'] = False
     notes = ' '.join(read_series(path, make_map(made.content)).notes)
-    assert (says('by_map', key='time.column', period='0.01') in notes) is (period is not None)
-    time = {'time': {'rate_Hz': 200.0}}
-    notes = ' '.join(read_series(path, make_map(made.content | time)).notes)
-    assert (says('by_map', key='time.rate_Hz', period='0.005') in notes) is (period is None)
+    assert (says('by_map') in notes) is (period is not None)
+    by_rate_200 = make_map(made.content | {'time': {'rate_Hz': 200.0}})
+    if period:
+        assert not any('states a period' in note for note in read_series(path, by_rate_200).notes)
+    else:
+        refused('denied', read_series, path, by_rate_200)
+        skipped = made.content | {'time': {'rate_Hz': 200.0}, 'skip': 1}
+        assert read_series(path, make_map(skipped)).usual_period == pytest.approx(0.005)
+
+
+@pytest.mark.parametrize('counter', ['', 'each row', 'each time'])
+@pytest.mark.parametrize('signals', [2, 3])
+def test_a_period_of_signals_on_rows_of_their_own_may_be_theirs(
+    signals, counter, tmp_path, says, refused
+):
+    """Speeds of a sine of 4 s, of which both readings tell the length of the log."""
+    path = tmp_path / 'log.csv'
+    names = ['X speed [mm/s]', 'X force [N]', 'Z force [N]'][:signals]
+    lines = []
+    for at, speed in enumerate(SPEED):
+        for place, value in enumerate((speed, -10.0 * speed, 7.0)[:signals]):
+            number = len(lines) if counter == 'each row' else at
+            cells = [f'{value:.4f}' if one == place else '' for one in range(signals)]
+            lines.append(';'.join([f'{number}'] * bool(counter) + cells))
+    head = ['Sample time: 10 ms', ';'.join(['No'] * bool(counter) + names)]
+    path.write_text('\n'.join([*head, *lines]) + '\n')
+    made = guess(path)
+    assert made.content['time']['rate_Hz'] is None
+    assert says('either_period', fast=f'{100 * signals}', rows=f'{signals}') in made.unstated
+    assert made.picture[0].startswith('Group 1: an unknown period')
+    for rate in (100.0, 100.0 * signals):
+        content = made.content | {'time': {'rate_Hz': rate}}
+        rows, *_ = next(read_series(path, make_map(content)).blocks())
+        times = (rows.stamps - rows.stamps[0]) / 1e9 * rate / 100.0 / signals
+        speeds = np.interp(times, TIME, SPEED) * math.tau / 10.0
+        np.testing.assert_allclose(rows.columns['x.speed'], speeds, atol=1e-4)
+    both = made.content | {'time': {'rate_Hz': 50.0}}
+    with refused('denied_both', fast=f'{100 * signals}'):
+        read_series(path, make_map(both))
+
+
+def test_a_signal_in_each_row_has_the_period_of_the_head_beside_a_rarer_one(tmp_path):
+    path = tmp_path / 'log.csv'
+    lines = [f'{one:.4f};' + '-300' * (at % 5 == 0) for at, one in enumerate(SPEED)]
+    path.write_text('Sample time: 10 ms\nX speed [mm/s];X force [N]\n' + '\n'.join(lines))
+    made = guess(path)
+    assert made.content['time']['rate_Hz'] == RATE
+    assert [one[:14] for one in made.picture[:2]] == ['Group 1: 10 ms', 'Group 2: 50 ms']
 
 
 @pytest.mark.parametrize('unit', ['s', 'ms'])
