@@ -11,7 +11,6 @@ point, numbers with a decimal comma, or times of one of the forms of `clocks`.
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
-import datetime as dt
 import math
 from pathlib import Path
 import re
@@ -20,8 +19,15 @@ import zlib
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import signs
-from ballscrew_monitor.recordings.tables.clocks import SAMPLE, time_forms, TimeForm
-from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
+from ballscrew_monitor.recordings.tables.clocks import (
+    either_date,
+    moments_of,
+    order_in_name,
+    SAMPLE,
+    time_forms,
+    TimeForm,
+)
+from ballscrew_monitor.recordings.tables.quantities import DAY, ORDERS, OTHER_SIGN
 from ballscrew_monitor.recordings.words import counted, short
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +40,13 @@ Form = Callable[[pl.Series], pl.Series]
 """Makes cells numbers, null where one is not a number."""
 Read = Callable[[list[str], Mapping[str, Any]], Iterator[pl.DataFrame]]
 """Reads some columns of a table part by part, those of a text by the types of plain numbers."""
+FOLLOWS, LEAPS = 60.0, 27.0 * DAY
+"""
+Steps [s] of rows that follow each other through midnight, and of those in another order of dates.
+
+The next day is one of the next month or year there, and at least that of the next but 27.
+
+"""
 ENDS = (KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
@@ -81,6 +94,9 @@ class _Count:
     first: str = ''  # of those that are no number, and its row
     least: float = math.inf
     most: float = -math.inf
+    last: float = math.nan  # of the dates of an order, as their sum
+    total: float = 0.0
+    leap: float = 0.0  # the widest between two cells
 
     def add(self, cells: pl.Series, row: int) -> bool:
         """Count cells from `row` on; return True if all that is written is a number."""
@@ -105,6 +121,15 @@ class _Count:
         self.good += len(numbers)
         self.least = float(np.min(numbers, initial=self.least))
         self.most = float(np.max(numbers, initial=self.most))
+        if self.order and len(numbers):
+            steps = np.abs(np.diff(numbers, prepend=self.last))
+            self.leap, self.last = float(np.nanmax(steps, initial=self.leap)), float(numbers[-1])
+            self.total += float(np.sum(numbers))
+
+    @property
+    def order(self) -> str:
+        """Return the order of the dates of a form, empty where there is no other one."""
+        return self.form.order if isinstance(self.form, TimeForm) else ''
 
     def _miss(self, cells: pl.Series, bad: NDArray[np.bool_], row: int) -> None:
         missing = int(bad.sum())
@@ -129,13 +154,13 @@ class Cells:
         """
         Begin with the column `name` of the log at `path`.
 
-        The first of its cells stands in the row `first_row` of the file; `order` is that of day
-        and month, where it is known; the numbers `none` stand for no value.
+        The first of its cells stands in the row `first_row` of the file; `order` is that of
+        dates, where it is known; the numbers `none` stand for no value.
 
         """
         self.where = f'log {path}: column {short(repr(name))}'
         self._row = self._first_row = first_row
-        self._order, self._none = order, none
+        self._order, self._none, self._named = order, none, order_in_name(name)
         self._first: Any = None
         self.signs = signs.Signs()
         self._type: pl.DataType = pl.Null()
@@ -194,7 +219,7 @@ class Cells:
         Raises InputError when it holds no number.
 
         """
-        chosen = self._chosen(sign, order)
+        chosen = self._chosen(sign, order or self.order)
         if not chosen.good:
             raise InputError(
                 f'{self.where} holds no number, but {short(repr(self._first))} in row '
@@ -221,30 +246,41 @@ class Cells:
 
     @property
     def order(self) -> str:
-        """Return the order of day and month that the dates show, empty if they show none."""
-        chosen = self._chosen()
-        return '' if self._twins(chosen) else getattr(chosen.form, 'order', '')
+        """Return the order of year, month and day that the dates show, empty if they show none."""
+        dates, _ = self._dates()
+        return dates[0].order if len(dates) == 1 else ''
 
     def doubt(self) -> str:
         """Return in words what else its dates may be, empty if all of them are clear."""
-        chosen = self._chosen()
-        both = self._twins(chosen)
-        if not both:
+        dates, _ = self._dates()
+        if len(dates) < 2:
             return ''
-        days = [f'{dt.datetime.fromtimestamp(one.least, dt.UTC):%Y-%m-%d}' for one in both]
-        orders = [one.form.order for one in both]  # type: ignore[attr-defined]
+        of_first = {form.order: moment for moment, form in moments_of(str(self._first))}
+        moments = {one.order: of_first.get(one.order, one.least) for one in dates}
         return (
             f'{self.where} holds {short(repr(self._first))} in row {self._first_row}, which is '
-            f'{days[0]} or {days[1]}, for no day of the log is above 12: state `time.order: '
-            f'{orders[0]}` or `time.order: {orders[1]}` in the map'
+            f'{either_date(moments)}, as every date of the log may be: state it in the map'
         )
 
-    def _twins(self, chosen: _Count) -> list[_Count]:
-        """Return the forms in which dates can be read, if they are two of one date."""
-        kind = next((kind for kind in self._kinds if chosen in kind), [])
-        both = [one for one in kind if one.good == chosen.good > 0]
-        dated = all(getattr(one.form, 'order', '') for one in both)
-        return both if dated and len({one.least for one in both}) > 1 else []
+    @property
+    def decided(self) -> str:
+        """Return in words why its dates are of an order, empty where no other one is possible."""
+        dates, why = self._dates()
+        return f'{self.where} holds dates of {ORDERS[dates[0].order]}: {why}' if why else ''
+
+    def _dates(self) -> tuple[list[_Count], str]:
+        """Return the forms in which all dates can be read, and what chose the only one."""
+        chosen = self._chosen()
+        kind = next((kind for kind in self._kinds if chosen in kind), [chosen])
+        dates = [one for one in kind if one.order and one.good == chosen.good > 0]
+        if len({(one.least, one.most, one.last, one.total) for one in dates}) < 2:
+            return [chosen], ''
+        if named := [one for one in dates if one.order == self._named]:
+            return named, 'its name says so'
+        near = [one for one in dates if one.leap < FOLLOWS]
+        if len(near) == 1 and all(one.leap > LEAPS for one in dates if one is not near[0]):
+            return near, 'the rows follow each other in no other order'
+        return dates, ''
 
     def _forms(self, cells: pl.Series) -> list[tuple[Form, ...]]:
         if self._type == pl.String:
@@ -328,8 +364,7 @@ class Cells:
         if not self._kinds:
             return _Count(form=_points)
         counts = [
-            max(kind, key=lambda one: (one.good, getattr(one.form, 'order', order) == order))
-            for kind in self._kinds
+            max(kind, key=lambda one: (one.good, one.order == order)) for kind in self._kinds
         ]
         if self._kinds[0][0].form is _NUMBERS['.']:
             own = [each for each in OTHER_SIGN if self.signs.shows(each)]

@@ -3,18 +3,19 @@
 """
 Times as tables write them: texts of dates and hours, and numbers that count from an epoch.
 
-Each date, time of day and epoch is an entry of a table. A day and a month that may be either are
-two entries, and all cells decide between them.
+Each date, time of day and epoch is an entry of a table. A date in numbers that may be of several
+orders is an entry each, and all cells decide between them.
 
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
+import datetime as dt
 import functools
 import re
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.quantities import DAY
+from ballscrew_monitor.recordings.tables.quantities import DAY, ORDERS
 import polars as pl
 
 KNOWN = (631_152_000.0, 4_102_444_800.0)  # [s] of the universal clock: 1990 to 2100
@@ -24,15 +25,18 @@ DATES = (
     ('', '%Y.%m.%d'),
     ('', '%Y%m%d'),
     ('', '%d.%m.%Y'),
-    ('', '%d.%m.%y'),
+    ('dmy', '%d.%m.%y'),
+    ('ymd', '%y.%m.%d'),
     ('dmy', '%d/%m/%Y'),
     ('mdy', '%m/%d/%Y'),
     ('dmy', '%d-%m-%Y'),
     ('mdy', '%m-%d-%Y'),
     ('dmy', '%d/%m/%y'),
     ('mdy', '%m/%d/%y'),
+    ('ymd', '%y/%m/%d'),
     ('dmy', '%d-%m-%y'),
     ('mdy', '%m-%d-%y'),
+    ('ymd', '%y-%m-%d'),
     ('', '%d-%B-%Y'),
     ('', '%d-%B-%y'),
     ('', '%d %B %Y'),
@@ -41,7 +45,7 @@ DATES = (
     ('', '%Y-%B-%d'),
     ('', '%Y %B %d'),
 )
-"""Dates, with the order of day and month where the other one is possible as well."""
+"""Dates, with the order of year, month and day where another one is possible as well."""
 HOURS = (
     '%H:%M:%S%.f',
     '%I:%M:%S%.f %p',
@@ -97,13 +101,18 @@ STEPS = (
 """What is replaced in a text before its form is looked for, each only where it occurs."""
 LONGEST_TIME = 64
 """Letters of the longest text that is taken for a time."""
+PART = '([dty]{1,4}|[jm]{1,4})'
+ORDER_IN_NAME = re.compile(rf'(?<![^\W\d_]){PART}[-/. ]+{PART}[-/. ]+{PART}(?![^\W\d_])', re.I)
+"""A date by its parts, as yy/mm/dd or TT.MM.JJJJ."""
+LETTERS = {'d': 'd', 't': 'd', 'm': 'm', 'y': 'y', 'j': 'y'}
+"""Parts of a date by the letters of English and German."""
 SAMPLE = 60  # cells by which the forms of a column are found
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TimeForm:
     """
-    A form of times: its pattern, and the order of day and month where there is another one.
+    A form of times: its pattern, and the order of its date where there is another one.
 
     `steps` are the replacements that its texts need; `kind` says whether it is a `moment`, a
     `day` or a time of a day, `hours`; `zoned` is a moment whose zone is written.
@@ -166,7 +175,7 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
             continue
         made = dataclasses.replace(form, steps=(*steps, *(MONTHS if '%B' in form.pattern else ())))
         if made._seconds(english).null_count() < len(sample):
-            key = re.sub('%[dm]', '', form.pattern) if form.order else form.pattern
+            key = re.sub('%[dmy]', '', form.pattern) if form.order else form.pattern
             by_hours.setdefault(key, []).append(made)
     yield from map(tuple, by_hours.values())
 
@@ -201,6 +210,26 @@ def _all_forms() -> dict[TimeForm, tuple[set[str], re.Pattern[str]]]:
         shapes = (PARTS.get(one, r' *\d+') if one[:1] == '%' else re.escape(one) for one in parts)
         forms[form] = set(''.join(parts[::2])), re.compile(''.join(shapes))
     return forms
+
+
+def order_in_name(name: str) -> str:
+    """Return the order of dates that a name states, as `yy/mm/dd`, empty if it states none."""
+    for match in ORDER_IN_NAME.finditer(name):
+        parts = [{LETTERS[letter] for letter in part.lower()} for part in match.groups()]
+        order = ''.join(''.join(part) for part in parts)
+        if all(len(part) == 1 for part in parts) and order in ORDERS:
+            return order
+    return ''
+
+
+def either_date(moments: Mapping[str, float]) -> str:
+    """Return in words which dates [s since 1970] are meant by which orders of a map."""
+    words = [
+        f'{dt.datetime.fromtimestamp(moments[order], dt.UTC):%Y-%m-%d} by time: {{order: {order}}}'
+        for order in ORDERS
+        if order in moments
+    ]
+    return ' or '.join(words)
 
 
 def moments_of(text: str) -> list[tuple[float, TimeForm]]:

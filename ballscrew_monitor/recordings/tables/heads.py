@@ -30,6 +30,7 @@ from ballscrew_monitor.recordings.tables.layouts import (
     period_of,
     property_of,
     REMARK,
+    STARTS,
     unit_of_period,
 )
 from ballscrew_monitor.recordings.tables.lines import BLANKS, cells_of_line, Line, separators_of
@@ -45,6 +46,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
 )
 from ballscrew_monitor.recordings.words import short
 
+KEY_AND_VALUE = re.compile(r'\W*([^:=]{2,40}?)\s*[:=]\s*(\S.*?)\s*')
 CHANNEL = re.compile(r'CH\s?\d+', re.I)
 COMMENTS = ('#', '%', '//')
 COMMENT = '#'
@@ -105,6 +107,7 @@ class Property:
     text: str
     row: int
     value: float = math.nan
+    label: str = ''
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,8 +119,9 @@ class Head:
     file. `symbols` are longer names, or the short ones where these repeat, `periods` [s] those
     that columns state, NaN for none; `labelled` are the columns that the head gives no name of
     their own; without `named` it names none. `properties` are those of the file by their words,
-    `factors` a row that scales cells, `unclear_period` a line with a period that may be one of
-    something else than rows, `machine` what is said of the machine, by the keys of `MACHINE`.
+    `dates` those that may say when it begins, `factors` a row that scales cells, `unclear_period`
+    a line with a period that may be one of something else than rows, `machine` what is said of the
+    machine, by the keys of `MACHINE`.
 
     """
 
@@ -131,6 +135,7 @@ class Head:
     named: bool = True
     program: Format | None = None
     properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
+    dates: tuple[Property, ...] = ()
     period: float = math.nan
     period_row: int = 0
     unclear_period: str = ''
@@ -562,6 +567,7 @@ class _Above:
             named=named,
             program=self.program,
             properties=properties,
+            dates=tuple(self._dates()),
             period=period,
             period_row=row,
             unclear_period=unclear,
@@ -778,6 +784,18 @@ class _Above:
             if kind not in ('', 'period', 'rate', *found, *self.rows) and value:
                 found[kind] = Property(text=value, row=line.row)
         return found
+
+    def _dates(self) -> Iterator[Property]:
+        """Yield dates and times of a day, by the first line of each label."""
+        labels = set()
+        for line, row in self.lines:
+            cells = row if len(row) > 1 else re.split('[;\t]', line.raw)
+            stated = [match.groups() for cell in cells if (match := KEY_AND_VALUE.fullmatch(cell))]
+            pairs = stated if len(stated) > 1 else [_key_and_value(line, self.separator)]
+            for label, value in pairs:
+                if property_of(label) in (*STARTS, 'clock') and value and label not in labels:
+                    labels.add(label)
+                    yield Property(text=value, row=line.row, label=label)
 
     def _machine(self) -> dict[str, Property]:
         """Return what the lines say of the machine; several that differ are unclear."""

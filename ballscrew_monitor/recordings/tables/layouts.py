@@ -34,15 +34,30 @@ PROPERTIES: dict[str, frozenset[str]] = {
         'scanrate acquisitionrate acquisitionfrequency'.split()
     ),
     'start': frozenset(
-        'starttime start startdate startdatetime startoftrace startofrecord begin begintime '
-        'recorded recordedat recordingstart recordingtime measurementstart triggertime '
-        'timestamp datetime date datum startzeit startzeitpunkt beginn messbeginn '
-        'aufnahmezeit aufnahme messdatum erstellt created createdat'.split()
+        'starttime start startdate startdatetime starttimestamp startoftrace startofrecord '
+        'startofmeasurement begin begintime begindate recordstart recordingstart recordingtime '
+        'measurementstart measurementbegin measurementtime teststart testbegin logstart '
+        'tracestart trigger triggertime triggerdate startzeit startdatum startuhrzeit '
+        'startzeitpunkt beginn messbeginn messstart messzeit testbeginn aufnahmezeit aufnahme '
+        'aufnahmestart aufnahmebeginn aufzeichnungsstart aufzeichnungsbeginn'.split()
+    ),
+    'date': frozenset(
+        'date datum timestamp datetime recorded recordedat recordingdate measurementdate '
+        'testdate messdatum aufnahmedatum prüfdatum pruefdatum'.split()
+    ),
+    'saved': frozenset(
+        'created createdat createdon creationdate creationtime datecreated exported exportedat '
+        'exportdate exporttime saved savedat filedate printed printedat erstellt erstelldatum '
+        'erstellungsdatum exportiert exportdatum gespeichert gedruckt druckdatum'.split()
     ),
     'clock': frozenset('time uhrzeit zeit'.split()),
     'decimal': frozenset('decimalseparator dezimaltrennzeichen decimal decimalsign'.split()),
 }
 """Words of each property, without blanks and signs."""
+STARTS = ('start', 'date', 'saved')
+"""What dates a log: its start itself, its date, and when a file of it was written, if no other."""
+ZERO_OF_TIME = re.compile(r'\W*t_?0\W*', re.I)
+"""What names the start of a measurement, as catman does."""
 COLUMN = re.compile(
     r'(?:column|col|channel|chan|ch|signal|kanal|spalte|curve|kurve)\W*(\d+)', re.I
 )
@@ -225,6 +240,8 @@ RECORDER = Format(program='a data recorder of SINUMERIK', mark=NO_MARK, metric=T
 def property_of(label: str) -> str:
     """Return the property that a label of a head means, empty for any other."""
     plain = re.sub(r'[\W\d_]+', '', re.sub(r'[\[(].*?[\])]', '', label).lower())
+    if ZERO_OF_TIME.fullmatch(label):
+        return STARTS[0]
     return next((kind for kind, words in PROPERTIES.items() if plain in words), '')
 
 

@@ -76,7 +76,8 @@ PLACES = {
     'are read as s, without a zone as UTC; a time of day goes on through midnight',
     'time.rate_Hz': 'instead of a column: rows at equal distances',
     'time.date': 'column of the days, if `column` holds the time of day',
-    'time.order': '`dmy` or `mdy`: order of day and month in dates that have no day above 12',
+    'time.order': '`dmy`, `mdy` or `ymd`: order of day, month and year in dates of numbers that '
+    'may be read in several; it counts for cells, the head and names',
     'AXIS.QUANTITY.time': 'column of the time of a quantity that has one of its own, in the unit '
     'of `time`',
     'time.epoch': 'time of the first row, such as 2000-01-01T00:00:00Z; without it the column '

@@ -30,7 +30,7 @@ SCALES = {
     unit: (factor, 0.0) for unit, factor in (conversions.TIME_UNITS | {'d': DAY}).items()
 } | EPOCHS
 """Units of a time that a map states, each with its factor and shift [s]."""
-ORDERS = {'dmy': 'day, month', 'mdy': 'month, day'}
+ORDERS = {'dmy': 'day, month, year', 'mdy': 'month, day, year', 'ymd': 'year, month, day'}
 """Orders of a date in numbers that a map states, in words."""
 RATED = '%'  # of the rated torque, or of the current at which the motor gives it
 UNITS: dict[str, Mapping[str, float]] = {

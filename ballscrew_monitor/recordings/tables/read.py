@@ -17,7 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
-from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.dates import start_in_head
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
@@ -226,6 +226,7 @@ def look_through(
             *source.notes,
             *short_rows,
             *(one.note for one in readings.values() if one.note),
+            *(one.decided for name, one in columns.items() if name in readings and one.decided),
             *_decided(source, columns, decision),
         ),
         left_out=left_out,
@@ -283,11 +284,10 @@ def _decided(source: Source, columns: Mapping[str, Cells], decision: Decision) -
 
 
 def _order(source: Source, columns: Mapping[str, Cells]) -> str:
-    """Return the order of day and month that dates of the log or its head show, else nothing."""
-    orders = {cells.order for cells in columns.values()}
-    if 'start' in source.head.properties:
-        moments = moments_of(source.head.properties['start'].text)
-        orders |= {form.order for _, form in moments} if len(moments) == 1 else set()
+    """Return the order that dates of the log or its head show, else nothing."""
+    orders = {cells.order for cells in columns.values()} or {''}
+    start = start_in_head(source.head).moments
+    orders |= {*start} if len(start) == 1 else set()
     orders.discard('')
     return orders.pop() if len(orders) == 1 else ''
 

@@ -63,14 +63,14 @@ class Signals:
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
-        properties = {'start': Property(text=self.start, row=1)} if self.start else {}
+        dates = (Property(text=self.start, row=1, label='start'),) if self.start else ()
         return Head(
             names=unlike(self.frame.columns),
             separator=self.separator,
             program=self.program,
             begin=0,
             first=1,
-            properties=properties,
+            dates=dates,
             period=self.period,
             unclear_period=self.unclear_period,
             factors=self.factors,

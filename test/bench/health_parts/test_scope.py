@@ -109,5 +109,5 @@ def test_logs_that_fail_alike_are_told_once(year, logs, first_map, capsys, tmp_p
     some = [str(path) for path in logs[1:8]]
     assert main(['health', *some, '--map', str(mapping)]) == 0
     said = capsys.readouterr().err
-    assert said.count('state time: {order: dmy} or mdy in the map') == 2
+    assert said.count('state time: {order: dmy} or time: {order: mdy} in the map') == 2
     assert '3 logs in all cannot be read' in said

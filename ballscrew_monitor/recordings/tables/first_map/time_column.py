@@ -13,7 +13,7 @@ from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
-    FIRST_YEAR,
+    FIRST,
     HEADER,
     NAME,
     start_in_head,
@@ -239,24 +239,20 @@ class TimeColumn:
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
         draft, start = self._draft, start_in_head(self._log.head)
-        begin, where, place = start.known, f'from line {start.row}', HEADER
+        begin, where, place = start.by(), f'from line {start.row}', HEADER
+        if start.bare and since is None:
+            where += ', a date without a time of day, taken as its midnight'
+        doubts = [start.open() + ' and date_from: header' * bool(start.moments)]
         if begin is None:
             place = NAME
-            for moment, text, of in dates_by_name(self._log.path):
-                if moment is None:
-                    why = (
-                        f'{why}, and the date {text} in the name of the {of} may be of either '
-                        'order of day and month: date_from: name with time: {order: dmy} or mdy '
-                        'dates it'
-                    )
+            for date, of in dates_by_name(self._log.path):
+                if (stamp := date.by()) is None:
+                    doubts.append(f'{date.open(of)} and date_from: name')
                     break
-                if begin is None and moment.year >= FIRST_YEAR:
-                    begin, where = moment.timestamp(), f'from the name of the {of}'
-        if begin is None and start.moments:
-            why = (
-                f'{why}, and its start {start.text} in line {start.row} may be of either order of '
-                'day and month: date_from: header with time: {order: dmy} or mdy dates it'
-            )
+                if begin is None and stamp >= FIRST:
+                    begin, where = stamp, f'from the name of the {of}'
+        if begin is None:
+            why = ', and '.join([why, *filter(None, doubts)])
         if since is not None and begin is not None:
             begin = begin - begin % estimates.DAY + since
         if begin is None:

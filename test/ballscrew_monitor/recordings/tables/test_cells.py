@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts as numbers or times: the form that reads the most cells, whatever the blocks are."""
 
+import datetime as dt
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.cells import Cells
+from ballscrew_monitor.recordings.tables.clocks import order_in_name
 from ballscrew_monitor.recordings.words import counted
 from hypothesis import assume, example, given, strategies
 import numpy as np
@@ -81,3 +83,101 @@ def check_column(texts, block):
     np.testing.assert_allclose(reading.extremes, [np.nanmin(wanted), np.nanmax(wanted)], atol=1e-6)
     missing = int(np.isnan(wanted).sum()) - texts.count(None)
     assert (f'holds {counted(missing, "cell")} without a number' in reading.note) == bool(missing)
+
+
+LETTERS = 'dmy', 'mdy', 'ymd'
+
+
+def in_order(texts, form):
+    """Return the days of texts by the calendar of Python, None where one is none since 1990."""
+    try:
+        days = [dt.datetime.strptime(text, form).replace(tzinfo=dt.UTC) for text in texts]
+    except ValueError:
+        return None
+    return [day.timestamp() for day in days] if min(days).year >= 1990 else None
+
+
+def read_column(texts, name='Date', order='', block=3):
+    cells = Cells(Path('log'), name, order=order)
+    for begin in range(0, len(texts), block):
+        cells.add(pl.Series(texts[begin:][:block]))
+    return cells, cells.reading(order=order).numbers(pl.Series(texts))
+
+
+@given(
+    strategies.lists(
+        strategies.dates(dt.date(1990, 1, 1), dt.date(2068, 12, 31)), min_size=1, max_size=4
+    ),
+    strategies.sampled_from('/-.'),
+    strategies.sampled_from(LETTERS),
+)
+@example([dt.date(2025, 7, 11)], '/', 'ymd')
+@example([dt.date(2025, 7, 11)], '.', 'ymd')
+@example([dt.date(2026, 11, 28)], '-', 'ymd')
+@example([dt.date(2025, 7, 14), dt.date(2032, 7, 14)], '/', 'ymd')
+def test_years_of_two_digits_are_read_by_the_only_order_or_all_are_named(days, sign, order):
+    allowed = [one for one in LETTERS if sign != '.' or one != 'mdy']  # no month first with dots
+    assume(order in allowed)
+    forms = {one: sign.join(f'%{letter}' for letter in one) for one in allowed}
+    texts = [day.strftime(forms[order]) for day in days]
+    readings = {one: read for one in allowed if (read := in_order(texts, forms[one]))}
+    cells, numbers = read_column(texts)
+    if len({*map(tuple, readings.values())}) == 1:
+        assert not cells.doubt()
+        np.testing.assert_array_equal(numbers, readings[order])
+        return
+    assert not cells.order
+    doubt = cells.doubt()
+    for one in LETTERS:
+        assert (f'{{order: {one}}}' in doubt) is (one in readings)
+    for one, read in readings.items():
+        first = dt.datetime.fromtimestamp(read[0], dt.UTC)
+        assert f'{first:%Y-%m-%d} by time: {{order: {one}}}' in doubt
+        np.testing.assert_array_equal(read_column(texts, order=one)[1], read)
+
+
+@pytest.mark.parametrize(
+    ('form', 'order'),
+    [
+        ('%y/%m/%d', 'ymd'),
+        ('%d.%m.%y', 'dmy'),
+        ('%m-%d-%y', 'mdy'),
+        ('%d/%m/%Y', 'dmy'),
+        ('%m/%d/%Y', 'mdy'),
+    ],
+)
+@pytest.mark.parametrize('midnight', [(2025, 7, 11), (2025, 8, 1), (2026, 1, 1)])
+def test_rows_that_go_on_through_midnight_show_the_order_of_their_dates(form, order, midnight):
+    begin = dt.datetime(*midnight, tzinfo=dt.UTC) - dt.timedelta(seconds=1)
+    moments = [begin + dt.timedelta(seconds=at / 4) for at in range(9)]
+    texts = [f'{one.strftime(form)} {one:%H:%M:%S.%f}' for one in moments]
+    cells, numbers = read_column(texts)
+    assert (cells.doubt(), cells.order) == ('', order)
+    np.testing.assert_allclose(numbers, [one.timestamp() for one in moments], atol=1e-6)
+
+
+def test_days_that_lie_apart_show_no_order():
+    """Which is a month later or a day, at other times of the day."""
+    cells, _ = read_column(['04/07/2025 18:00:00', '05/07/2025 08:00:00'])
+    assert not cells.order
+    assert '2025-07-04 by time: {order: dmy} or 2025-04-07 by time: {order: mdy}' in cells.doubt()
+
+
+@pytest.mark.parametrize(
+    ('name', 'day'),
+    [
+        ('Date (yy/mm/dd)', (2025, 7, 11)),
+        ('Date [dd/mm/yy]', (2011, 7, 25)),
+        ('Datum TT.MM.JJ hh:mm:ss', (2011, 7, 25)),
+        ('Y/M/D', (2025, 7, 11)),
+    ],
+)
+def test_a_name_states_the_order_of_its_dates(name, day):
+    cells, numbers = read_column(['25/07/11'], name)
+    assert numbers[0] == dt.datetime(*day, tzinfo=dt.UTC).timestamp()
+    assert cells.decided.endswith('its name says so')
+
+
+@pytest.mark.parametrize('name', ['Date', 'dmy', 'my day', 'X/Y/Z', 'm/d', 'd-d-d', 'Date (mm)'])
+def test_other_names_state_no_order(name):
+    assert order_in_name(name) == ''

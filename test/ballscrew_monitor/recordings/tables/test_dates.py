@@ -4,9 +4,11 @@
 
 import datetime
 import os
+import pathlib
+import tempfile
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.dates import date_in_head, date_in_name
+from ballscrew_monitor.recordings.tables.dates import date_in_name
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -95,13 +97,13 @@ def test_two_logs_of_a_day_with_a_number_have_one_date():
     'head',
     [
         'Start;14.07.2025 11:59:50\n',
-        'Date;2025-07-14\nTime;11:59:50.250\n',
+        'Date;2025-07-14\nTime;11:59:50.000\n',
         '# created 2025/07/14, 11:59:50\n',
         'File version 20250713\nDatum: 14.07.2025\nUhrzeit: 11:59:50\n',
     ],
 )
-def test_a_head_dates_a_log(head):
-    assert date_in_head(head) == MOMENT
+def test_a_head_dates_a_log(head, tmp_path):
+    assert begin_of(write(tmp_path / 'a.csv', head), content(date_from='header')) == MOMENT
 
 
 @pytest.mark.parametrize(
@@ -121,10 +123,113 @@ def test_the_start_of_a_head_dates_a_log(tmp_path, start, order, moment):
     assert begin_of(log, mapping) == datetime.datetime(*moment, tzinfo=datetime.UTC)
 
 
-def test_a_start_of_either_order_is_refused(tmp_path, refused):
-    log = write(tmp_path / 'a.csv', 'Scope Export\nStartTime,5-2-2025 06:59:42\n\n')
-    with refused('either_order', log=log):
+@pytest.mark.parametrize(
+    ('text', 'dates'),
+    [
+        ('5-2-2025 06:59:42', {'dmy': '2025-02-05', 'mdy': '2025-05-02'}),
+        ('25/07/11 06:59:42', {'dmy': '2011-07-25', 'ymd': '2025-07-11'}),
+        ('25.07.11', {'dmy': '2011-07-25', 'ymd': '2025-07-11'}),
+        ('11-07-10', {'dmy': '2010-07-11', 'mdy': '2010-11-07', 'ymd': '2011-07-10'}),
+    ],
+)
+def test_a_start_of_several_orders_is_refused_until_the_map_says_it(
+    text, dates, tmp_path, refused
+):
+    log = write(tmp_path / 'a.csv', f'Scope Export\nStartTime,{text}\n\n')
+    mapping = content(date_from='header')
+    with refused(
+        'either_order', log=log, orders=' or '.join(map('time: {{order: {}}}'.format, dates))
+    ):
+        TableLog(log, make_map(mapping))
+    for order, day in dates.items():
+        mapping['time']['order'] = order
+        assert f'{begin_of(log, mapping).date()}' == day
+
+
+STARTS = 'Start', 'Start time', 'Measurement start', 'T0 ', 'Messbeginn', 'Trigger time'
+LATER = 'Created', 'Exported', 'Saved at', 'Date', 'Druckdatum'
+
+
+@given(
+    st.sampled_from(STARTS),
+    st.sampled_from(LATER),
+    st.booleans(),
+    st.sampled_from([': ', ';', ' = ']),
+)
+def test_the_start_of_a_measurement_dates_it_whatever_else_is_dated(start, other, first, sign):
+    lines = [f'{start}{sign}14.07.2025 11:59:50', f'{other}{sign}16.07.2025 08:00:00']
+    assert begin_by_head('\n'.join(lines[:: 1 if first else -1])) == MOMENT
+
+
+@pytest.mark.parametrize(
+    'head',
+    [
+        'Start date: 14.07.2025\nStart time: 11:59:50\nEnd date: 15.07.2025\nEnd time: 00:00:08',
+        'Date;2025-07-14\nMeasurement start;2025-07-14 11:59:50',
+        'DATE=14.07.2025\nT0 = 14.07.2025 11:59:50',
+        'Date: 14.07.2025 00:00\nStart time: 11:59:50',
+        'Test date: 14.07.2025; Start: 11:59:50',
+        'Created: 2025-07-15 08:00:00\nDate: 2025-07-14\nTime: 11:59:50',
+        'Date (yy/mm/dd): 25/07/14\nTime: 11:59:50',
+        'Datum (TT.MM.JJ): 14.07.25\nUhrzeit: 11:59:50',
+        'StartTime,7/14/2025 11:59:50 AM,133969823900000000',
+        'StartTime;7/14/2025 11:59:50 AM;133969823900000000',
+        'StartTime\t7/14/2025 11:59:50 AM\t133969823900000000',
+    ],
+)
+def test_lines_of_a_head_that_date_the_start_together(head):
+    assert begin_by_head(head) == MOMENT
+
+
+@pytest.mark.parametrize(
+    ('key', 'head'),
+    [
+        ('two_starts', 'Start: 2025-07-14 11:59:57\nTrigger time: 2025-07-14 12:30'),
+        ('head_without_day', 'Created: 2025-07-15 08:00:00\nStart time: 11:59:57'),
+    ],
+)
+def test_starts_that_contradict_each_other_date_nothing(key, head, tmp_path, refused, says):
+    log = write(tmp_path / 'a.csv', f'{head}\n\n')
+    with refused(key, log=log):
         TableLog(log, make_map(content(date_from='header')))
+    log.write_text(log.read_text().replace('t,v', 't [s],X speed [mm/s]'))
+    epoch = guess(log).content['assumed']['time.epoch']
+    assert epoch['value'].startswith('2000')
+    assert says(key, log='').removeprefix('log : ') in epoch['reason']
+
+
+def test_a_date_without_a_time_of_day_is_said_to_be_one(tmp_path):
+    log = write(tmp_path / 'a.csv', 'Date: 2025-07-14\n\n')
+    log.write_text(log.read_text().replace('t,v', 't [s],X speed [mm/s]'))
+    (found,) = [line for line in guess(log).picture if line.startswith('Found')]
+    begin = 'start 2025-07-14 00:00:00 from line 1, a date without a time of day'
+    assert begin in found
+
+
+@pytest.mark.parametrize(
+    ('name', 'dates'),
+    [
+        ('07-14-2025_11-59-50', {'mdy': MOMENT}),
+        ('14072025', {'dmy': MIDNIGHT}),
+        ('250714_115950', {'dmy': MOMENT.replace(year=2014, day=25), 'ymd': MOMENT}),
+        ('25-07-14', {'dmy': MIDNIGHT.replace(year=2014, day=25), 'ymd': MIDNIGHT}),
+    ],
+)
+def test_a_name_may_hold_a_date_in_other_forms(name, dates, tmp_path, says):
+    log = write(tmp_path / f'feed_{name}.csv')
+    for order, moment in dates.items():
+        mapping = content(date_from='name')
+        mapping['time'] |= {'order': order} if len(dates) > 1 else {}
+        assert begin_of(log, mapping) == moment
+    log.write_text(log.read_text().replace('t,v', 't [s],X speed [mm/s]'))
+    made = guess(log)
+    assert ('date_from' in made.content) is (len(dates) == 1)
+    if len(dates) > 1:
+        readings = ' or '.join(
+            f'{moment.date()} by time: {{order: {order}}}' for order, moment in dates.items()
+        )
+        reason = made.content['assumed']['time.epoch']['reason']
+        assert says('short_name', date=name, readings=readings) in reason
 
 
 def test_a_log_begins_at_its_date(tmp_path):
@@ -138,6 +243,12 @@ def test_a_log_begins_at_its_date(tmp_path):
         assert begin_of(log, content(date_from=place)) == MOMENT
     in_folder = begin_of(write(folder / 'a.csv'), content(date_from='name'))
     assert in_folder == MIDNIGHT - datetime.timedelta(days=1)
+
+
+def begin_by_head(head):
+    with tempfile.TemporaryDirectory() as folder:
+        log = write(pathlib.Path(folder) / 'a.csv', f'{head}\n\n')
+        return begin_of(log, content(date_from='header'))
 
 
 def begin_of(log, mapping):

@@ -377,7 +377,29 @@ def test_a_head_of_either_order_dates_nothing_and_says_how(tmp_path):
     log.write_text(f'Scope Export\nStartTime,5-2-2025 09:14:03\n\nt_s,x_vel\n{rows}')
     made = guess(log)
     assert 'date_from' not in made.content
-    assert 'time: {order: dmy} or mdy' in made.content['assumed']['time.epoch']['reason']
+    assert 'by time: {order: mdy}' in made.content['assumed']['time.epoch']['reason']
+
+
+@pytest.mark.parametrize('split', [False, True])
+def test_dates_of_several_orders_are_asked_about_and_read_by_each(split, tmp_path, says, refused):
+    """A control of Japan writes 25/07/11 on 11 July 2025."""
+    log = tmp_path / 'log.csv'
+    between, names = (';', 'Date;Time') if split else (' ', 'Time')
+    rows = ''.join(f'25/07/11{between}10:00:{0.1 * at:06.3f};{at % 7}\n' for at in range(100))
+    log.write_text(f'{names};x_vel [mm/s]\n{rows}')
+    made = guess(log)
+    assert made.content['time']['order'] is None
+    column, cell = ('Date', '25/07/11') if split else ('Time', '25/07/11 10:00:00.000')
+    assert says('two_orders', log=log, column=column, cell=cell) in made.unstated
+    made.content['time'].pop('order')
+    with refused('two_orders', log=log, column=column, cell=cell):
+        read_series(log, make_map(made.content))
+    for order, day in (('ymd', (2025, 7, 11)), ('dmy', (2011, 7, 25))):
+        made.content['time']['order'] = order
+        begin = read_series(log, make_map(made.content)).begin / 1e9
+        assert dt.datetime.fromtimestamp(begin, dt.UTC).replace(tzinfo=None) == dt.datetime(
+            *day, 10
+        )
 
 
 def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
