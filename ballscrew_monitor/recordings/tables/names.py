@@ -142,6 +142,7 @@ BARS = re.compile(r'\|[^|]+\|')
 WITH_SIGN = ('speed', 'position', 'load')
 """Words and bars of a column without the sign or of twice the way, and what is nothing so."""
 PERCENT = frozenset({'percent', 'pct'})
+AMPLITUDE = re.compile(r'A\s*[(_ ]?\s*(?:p|pk|peak|max)\s*\)?')
 OF_RATED = re.compile(r'%|‰|per ?mille?|promille|percent|prozent|rated', re.I)
 """Units of parts of a rated torque or current."""
 TELLS_NOTHING = (
@@ -514,17 +515,32 @@ def unknown_units(named: Sequence[Named]) -> list[str]:
     """Return sentences about columns that may be inputs, were their units known."""
     return [
         f'column {short(repr(one.column))} is in '
-        f'{short(unknown_unit(one.column, one.doubtful))}, which is no unit of a '
-        f'{one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
-        f'{_unit_of_map(one)}` in the map, what one of it is'
+        f'{short(unknown_unit(one.column, one.doubtful))}, {not_of_maps(one)}: write '
+        f'`{_kind_of_map(one)}: {{column: {short(one.column)}, unit: {_unit_of_map(one)}` in the '
+        'map, what one of it is'
         for one in named
         if one.doubtful in INPUTS and one.place in ('axis', 'machine')
     ]
 
 
+def not_of_maps(one: Named) -> str:
+    """Return in words that no map states the unit of a column, or that it is of an amplitude."""
+    if AMPLITUDE.fullmatch(unknown_unit(one.column, one.doubtful)):
+        return 'an amplitude of a current, of which maps state the effective value'
+    return f'which is no unit of a {one.doubtful} that maps know'
+
+
+def _kind_of_map(one: Named) -> str:
+    """Return the quantity as which a map states a column in an unknown unit."""
+    unit = unknown_unit(one.column, one.doubtful)
+    if AMPLITUDE.fullmatch(unit):
+        return 'current'
+    return 'torque' if one.doubtful == 'load' and OF_RATED.search(unit) else one.doubtful
+
+
 def _unit_of_map(one: Named) -> str:
     """Return the unit that a map states of a column in an unknown one, and what belongs to it."""
-    units = UNITS[one.doubtful]
+    units = UNITS[_kind_of_map(one)]
     if RATED in units and OF_RATED.search(unknown_unit(one.column, one.doubtful)):
         return f"'{RATED}', scale: ...}}, torque_rated_Nm: ..."
     shifted = ', offset: ...' * (one.doubtful == 'temperature')

@@ -17,7 +17,10 @@ COMPOUND = re.compile(
     '|temperatur|temp(?!s$)|zeit)s?(istwert|sollwert|wert)?'
 )
 """A German word of several, such as Motorstrom."""
-BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
+BRACKETS = re.compile(r'[\[(]((?:[^\[\]()]|\([^()]*\))+)[\])]')
+"""What stands in brackets, which may hold further ones, as A(p) does."""
+TREATED = frozenset('filtered unfiltered gefiltert smoothed raw mean average avg'.split())
+"""Words in brackets that are no unit."""
 LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
 """The letter of an axis in brackets, as of FANUC."""
 OF_QUOTIENT = re.compile(r'(?P<name>.*?[^\W_])(?P<sign>\s*/\s*|\s+in\s+)(?P<unit>[^\s\[\]()]+)')
@@ -29,7 +32,7 @@ _PREFIX = re.compile(r'(?<![^\W\d_])(?:da|[munkMGhcdµμ])$')
 """A prefix of the SI that begins a word: what follows is no unit by itself, as N in daN."""
 _BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
 _OTHER_WORDS = frozenset(
-    'min rev rad radian radians deg degree degrees grad nm ma amp amps'.split()
+    'min rev rad radian radians deg degree degrees grad nm ma amp amps arms'.split()
 )
 _ALIASES = {
     'mm': ('millimeter', 'millimetre'),
@@ -47,7 +50,7 @@ _ALIASES = {
     'N': ('newton', 'newtons'),
     'N m': ('nm', 'n.m', 'n*m', 'n·m', 'newton/meter'),
     'degC': ('c', '°c', 'deg/c', '°/c', 'grad/c', 'celsius'),
-    'A': ('amp', 'amps', 'ampere', 'amperes'),
+    'A': ('amp', 'amps', 'ampere', 'amperes', 'arms', 'a(rms)', 'a/rms', 'aeff', 'a/eff'),
     's': ('sec', 'seconds', 'sek', 'sekunden'),
     'ms': ('msec', 'millis', 'milliseconds'),
     'us': ('usec', 'µs', 'μs', 'microseconds'),
@@ -63,7 +66,7 @@ _CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
         'in/s': ('mm/s', 25.4),
         'ips': ('mm/s', 25.4),
         'cm/s': ('mm/s', 10.0),
-        'um/s': ('mm/s', 1e-3),
+        **dict.fromkeys(('um/s', 'µm/s', 'μm/s'), ('mm/s', 1e-3)),
         **dict.fromkeys(('deg/s', 'deg/sec', 'degps', '°/s', 'grad/s'), ('rev/min', 1.0 / 6.0)),
         **dict.fromkeys(('degree/s', 'degrees/s', 'degree/second'), ('rev/min', 1.0 / 6.0)),
         **dict.fromkeys(('deg/min', '°/min', 'grad/min'), ('rev/min', 1.0 / 360.0)),
@@ -83,12 +86,14 @@ _CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
     },
     'load': {
         'dan': ('N', 10.0),
+        'dn': ('N', 0.1),
         'lbf': ('N', 4.4482216152605),
         'kgf': ('N', 9.80665),
         'kp': ('N', 9.80665),
     },
     'torque': {
         'mnm': ('N m', 1e-3),
+        'cnm': ('N m', 1e-2),
         'ncm': ('N m', 1e-2),
         'dnm': ('N m', 1e-1),
         'knm': ('N m', 1e3),
@@ -98,7 +103,12 @@ _CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
     'current': {'ka': ('A', 1e3)},
 }
 """Spellings of units that a map writes as one of its own and a scale."""
-_IN_BRACKETS = frozenset({'in', 'kp'})  # which are words, too
+_BY_CASE: dict[str, dict[str, tuple[str, float]]] = {
+    'load': {'mN': ('N', 1e-3), 'MN': ('N', 1e6)},
+    'torque': {'MNm': ('N m', 1e6), 'MN m': ('N m', 1e6)},
+}
+"""Units in brackets that are others in small letters."""
+_IN_BRACKETS = frozenset({'in', 'kp', 'dn'})  # which are words, too
 _POWER = r'(?:10+(?:\s*\^\s*[-+]?\d+)?|0?[.,]0*1|1[eE][-+]?\d+)(?![\d.,])'
 _FACTOR = re.compile(
     rf'(?:(?<=[\s_\[(])x|[×*÷/])\s*{_POWER}|[×*÷]\s*\d[\d.,]*|'
@@ -134,7 +144,10 @@ def converted_unit(column: str, kind: str) -> tuple[str, float]:
     The unit is empty where a name of a column states none that is so many times one of a map.
 
     """
-    known = _CONVERTED.get(kind, {})
+    by_case, known = _BY_CASE.get(kind, {}), _CONVERTED.get(kind, {})
+    for text in BRACKETS.findall(column):
+        if text.strip() in by_case:
+            return by_case[text.strip()]
     inside = (_plain(text) for text in BRACKETS.findall(column))
     texts = [*inside, *(text for text in _ends(column) if text not in _IN_BRACKETS)]
     return next((known[text] for text in texts if text in known), ('', 1.0))
@@ -163,7 +176,11 @@ def unknown_unit(column: str, kind: str = '') -> str:
     It is in the last brackets, or a factor beside the unit of a kind of quantity.
 
     """
-    texts = [text for text in BRACKETS.findall(LETTERED.sub(' ', column)) if not text.isdigit()]
+    texts = [
+        text
+        for text in BRACKETS.findall(LETTERED.sub(' ', column))
+        if not text.isdigit() and not ({*words_of(text)} and {*words_of(text)} <= TREATED)
+    ]
     last = texts[-1].strip() if texts else ''
     factor = factor_of(column, kind)
     return last if factor in last else factor

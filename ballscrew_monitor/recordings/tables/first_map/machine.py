@@ -59,7 +59,7 @@ def _set_temperature(draft: Draft, name: str) -> None:
             and names.is_of_the_screw(one.column)
         ):
             unit = unknown_unit(one.column, one.doubtful)
-            why = f'{short(one.column)} is in {short(unit)}, which is no unit of a temperature'
+            why = f'{short(one.column)} is in {short(unit)}, {names.not_of_maps(one)}'
             draft.ask(f'{name}.temperature_degC', f', or its column: {why}')
             return
     why = 'no column is the oil temperature of this axis'
@@ -141,8 +141,7 @@ def _set_load(draft: Draft, name: str) -> None:
     lost = [f'{", ".join(log.lost[name])} holds no number'] if log.lost[name] else []
     still = [f'{", ".join(silent)} is always 0'] if silent else []
     doubtful = [
-        f'{one.column} is in {unknown_unit(one.column, one.doubtful)}, which is no unit of a '
-        f'{one.doubtful}'
+        f'{one.column} is in {unknown_unit(one.column, one.doubtful)}, {names.not_of_maps(one)}'
         for one in log.named
         if one.doubtful in ('load', *MOTOR)
         and one.axis in ('', *(each.axis for each in chosen.values()))

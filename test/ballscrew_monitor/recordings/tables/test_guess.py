@@ -712,7 +712,7 @@ def test_a_place_in_another_unit_goes_with_its_speed(guessed):
 def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x force [slug]': SPEED})
     assert says('unit_slug') in made.notes
-    why = 'x force [slug] is in slug, which is no unit of a load'
+    why = 'x force [slug] is in slug, which is no unit of a load that maps know'
     assert made.content['axes']['x']['load'] == {'unknown': why}
     refused('unit_furlong', guessed, {'t_s': TIME, 'x vel [furlong/h]': SPEED})
 

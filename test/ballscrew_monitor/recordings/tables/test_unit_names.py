@@ -5,7 +5,8 @@
 import math
 
 from ballscrew_monitor.core.conversions import ROTARY_SPEED_UNITS
-from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.names import read_name, unknown_units
+from ballscrew_monitor.recordings.tables.quantities import UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
     factor_of,
     is_unit,
@@ -144,3 +145,50 @@ def test_what_is_no_unit_is_told_whole():
     assert unknown_unit('x velocity [mm/s] x10', 'speed') == 'x10'
     assert unknown_unit('x_force_10N', 'load') == '10N'
     assert not unknown_unit('x force', 'load')
+
+
+PREFIXES = {'µ': 1e-6, 'μ': 1e-6, 'u': 1e-6, 'm': 1e-3, 'c': 1e-2, 'd': 0.1, 'k': 1e3, 'M': 1e6}
+"""Of the brochure of the SI, table 7; both letters for micro are in use."""
+
+
+@pytest.mark.parametrize(
+    ('kind', 'unit', 'prefix'),
+    [
+        *(('load', 'N', prefix) for prefix in 'mdkM'),
+        *(('torque', 'Nm', prefix) for prefix in 'mcdkM'),
+        *(('speed', 'm/s', prefix) for prefix in 'µμumc'),
+        *(('position', 'm', prefix) for prefix in 'µμumc'),
+    ],
+)
+def test_a_multiple_of_a_unit_is_so_many_of_it(kind, unit, prefix):
+    words = {'load': 'force', 'speed': 'vel'}
+    name = f'x {words.get(kind, kind)} [{{}}]'
+    one, many = (read_name(name.format(text)) for text in (unit, f'{prefix}{unit}'))
+    assert one.kind == many.kind == kind
+    size, whole = (named.scale * UNITS[kind][named.unit] for named in (many, one))
+    assert size / whole == pytest.approx(PREFIXES[prefix], rel=1e-12)
+
+
+@pytest.mark.parametrize('unit', ['Arms', 'A(rms)', 'A rms', 'Aeff', 'A'])
+def test_an_effective_current_is_one(unit):
+    named = read_name(f'X current [{unit}]')
+    assert (named.kind, named.unit, named.scale) == ('current', 'A', 1.0)
+    assert not read_name('robot arms').kind
+
+
+@pytest.mark.parametrize('unit', ['A(p)', 'A(peak)', 'Ap', 'Apk', 'A pk'])
+def test_an_amplitude_of_a_current_is_asked_for(unit, says):
+    named = read_name(f'X current [{unit}]')
+    assert (named.kind, named.doubtful) == ('', 'current')
+    assert unknown_units([named]) == [says('amplitude', unit=unit)]
+
+
+def test_a_load_in_per_cent_is_a_torque(says):
+    assert unknown_units([read_name('X load [% rated]')]) == [says('rated')]
+
+
+@pytest.mark.parametrize('word', ['Filtered', 'raw', 'Mean', 'unfiltered'])
+def test_a_word_in_brackets_is_no_unit(word):
+    named = read_name(f'Force ({word})')
+    assert (named.kind, named.unit) == ('load', '')
+    assert read_name('Force (slug)').doubtful == 'load'
