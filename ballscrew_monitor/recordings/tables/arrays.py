@@ -5,16 +5,29 @@
 from collections.abc import Iterable, Mapping, Sequence
 import math
 from pathlib import Path
+import re
 from typing import Any
 
 from ballscrew_monitor.recordings.tables.apart import check_room, library_of
 from ballscrew_monitor.recordings.tables.heads import with_unit
-from ballscrew_monitor.recordings.tables.signals import Signals, signals_of, stated_factors
+from ballscrew_monitor.recordings.tables.layouts import LONGEST_PERIOD
+from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.signals import (
+    behind_times,
+    DOUBTFUL,
+    NUMBERS,
+    periods_of,
+    Signals,
+    signals_of,
+    stated_factors,
+)
 import numpy as np
 from surrogate.files import limits
 
 SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue', 'missing_value')
 """Attributes of the CF conventions: a value is the number times the factor plus the offset."""
+BEGIN = re.compile(r'start|begin|offset|delay|^t_?0$', re.I)
+"""Names of attributes that may shift the time of a dataset."""
 NUMERIC = 'double single logical int8 int16 int32 int64 uint8 uint16 uint32 uint64'.split()
 """Classes of arrays of numbers in files of MATLAB."""
 
@@ -46,6 +59,7 @@ def read_hdf(path: Path) -> Signals:
     held: dict[str, Any] = {}
     factors: list[str] = []
     datasets: dict[str, Any] = {}
+    periods: dict[str, float] = {}
 
     def visit(name: str, item: Any) -> None:
         called = name.replace('/', '.')
@@ -75,8 +89,39 @@ def read_hdf(path: Path) -> Signals:
                 unit = units[0] if units.size else ''
                 text = unit.decode() if isinstance(unit, bytes) else str(unit)
                 held[with_unit(called, text)] = _scaled(item)
+                if period := _period_of(item.attrs):
+                    periods[with_unit(called, text)] = period
                 factors.extend(_unclear_factors(called, item.attrs))
-        return _signals(held, factors)
+        return _signals(_behind_periods(held, periods), factors)
+
+
+def _period_of(attributes: Mapping[str, Any]) -> float:
+    """Return the period [s] that an attribute of a dataset states plainly, 0 if not one does."""
+    plain = {name: value for name, value in attributes.items() if name.lower() not in DOUBTFUL}
+    numbers = {
+        name: float(np.ravel(one)[0])
+        for name, one in plain.items()
+        if np.size(one) == 1 and np.asarray(one).dtype.kind in NUMBERS
+    }
+    periods = {round(period, 15) for period in periods_of(numbers).values()}
+    begins = any(BEGIN.search(name) for name in attributes)
+    plainly = len(periods) == 1 and not begins and max(periods) <= LONGEST_PERIOD
+    return periods.pop() if plainly else 0.0
+
+
+def _behind_periods(found: dict[str, Any], periods: Mapping[str, float]) -> dict[str, Any]:
+    """Return signals behind times that their own periods [s] tell, if all have one."""
+    arrays = {name: np.asarray(one) for name, one in found.items() if np.size(one) > 1}
+    if {*arrays} != {*periods} or any(
+        one.ndim != 1 or read_name(name).kind == 'time' for name, one in arrays.items()
+    ):
+        return found
+    groups: dict[tuple[float, int], dict[str, Any]] = {}
+    for name, one in arrays.items():
+        groups.setdefault((periods[name], len(one)), {})[name] = one
+    rows = [(period * np.arange(count), held) for (period, count), held in groups.items()]
+    beside = {name: one for name, one in found.items() if name not in arrays}
+    return {**beside, **behind_times(rows)} if rows else found
 
 
 def _scaled(dataset: Any) -> Any:

@@ -90,7 +90,7 @@ def signals_of(columns: Columns, beside: Columns, stated: Columns, **more: Any) 
         for name, one in beside.items()
         if np.ndim(one) == 0 and np.asarray(one).dtype.kind in NUMBERS
     }
-    periods = {**stated, **_periods(numbers)}
+    periods = {**stated, **periods_of(numbers)}
     others = [
         name
         for name, number in numbers.items()
@@ -115,7 +115,7 @@ def signals_of(columns: Columns, beside: Columns, stated: Columns, **more: Any) 
     )
 
 
-def _periods(numbers: Mapping[str, float]) -> dict[str, float]:
+def periods_of(numbers: Mapping[str, float]) -> dict[str, float]:
     """Return the periods [s] that numbers may be by their names."""
     last = {name: re.sub('[_ ]', '', name.rpartition('.')[2].lower()) for name in numbers}
     return {

@@ -12,7 +12,9 @@ from ballscrew_monitor.recordings.tables import apart, foreign, json_layouts
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.sources import source_of
 import h5py
 import numpy as np
 import pytest
@@ -259,6 +261,51 @@ def test_a_unit_of_a_dataset_may_be_an_array_of_one(unit, tmp_path):
         file['force'] = SPEED
         file['force'].attrs['units'] = unit
     assert foreign.read_signals(path, 'hdf').frame.columns == ['force [N]']
+
+
+@pytest.mark.parametrize(
+    ('attribute', 'of_rate'),
+    [
+        ('sample_rate', lambda rate: rate),
+        ('fs', lambda rate: np.array([rate])),
+        ('Sampling_Time', lambda rate: 1.0 / rate),
+        ('dt', lambda rate: 1.0 / rate),
+    ],
+)
+@pytest.mark.parametrize('rates', [(100.0, 20.0), (50.0, 50.0)])
+def test_datasets_have_the_times_of_their_own_rates(attribute, of_rate, rates, tmp_path):
+    path, stated = tmp_path / 'log.h5', dict(zip(('x_vel_mm_s', 'x_force_N'), rates, strict=True))
+    with h5py.File(path, 'w') as file:
+        for name, rate in stated.items():
+            file[name] = np.sin(np.arange(int(11 * rate)) / rate)
+            file[name].attrs[attribute] = of_rate(rate)
+    made = guess(path)
+    axis = made.content['axes']['x']
+    times = [axis[kind].get('time', made.content['time']['column']) for kind in ('speed', 'load')]
+    assert len({*times}) == len({*rates})
+    for name, time in zip(stated, times, strict=True):
+        rows = open_table(path, [name, time]).head(9999)
+        known = np.isfinite(rows[time])
+        expected = np.sin(rows[time][known])
+        np.testing.assert_allclose(rows[name][known], expected, atol=1e-9)
+        assert rows[time][known][1] == pytest.approx(1.0 / stated[name])
+
+
+@pytest.mark.parametrize('change', ['t0', 'start_time', 'rate', 'no', 'time'])
+def test_rates_of_datasets_that_may_be_others_are_asked_for(change, tmp_path):
+    """A start of their own, a rate of whatever, one without a rate, or a time beside them."""
+    path = tmp_path / 'log.h5'
+    with h5py.File(path, 'w') as file:
+        for name in ('x_vel_mm_s', 'x_force_N'):
+            file[name] = np.sin(np.arange(99))
+            if change != 'no' or name == 'x_force_N':
+                file[name].attrs['rate' if change == 'rate' else 'fs'] = 10.0
+        if change in ('t0', 'start_time'):
+            file['x_force_N'].attrs[change] = 5.0
+        if change == 'time':
+            file['t_s'] = np.arange(99) / 100
+    names = source_of(path).names()
+    assert names == sorted({'x_vel_mm_s', 'x_force_N', *['t_s'] * (change == 'time')})
 
 
 def test_values_on_change_stand_still_between(tmp_path):
