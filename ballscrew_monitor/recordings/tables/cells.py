@@ -250,10 +250,10 @@ class Cells:
         dates, _ = self._dates()
         return dates[0].order if len(dates) == 1 else ''
 
-    def doubt(self) -> str:
-        """Return in words what else its dates may be, empty if all of them are clear."""
+    def doubt(self, order: str = '') -> str:
+        """Return in words what else its dates may be, empty if they or an order make it clear."""
         dates, _ = self._dates()
-        if len(dates) < 2:
+        if len(dates) < 2 or order in [one.order for one in dates]:
             return ''
         of_first = {form.order: moment for moment, form in moments_of(str(self._first))}
         moments = {one.order: of_first.get(one.order, one.least) for one in dates}
@@ -289,10 +289,10 @@ class Cells:
             if not plain.null_count() and not np.isnan(_finite(_points, plain)).any():
                 return [numbers]
             forms = [
-                tuple(form for form in kind if form.order in ('', self._order or form.order))
+                tuple(form for form in kind if form.order == self._order) or kind
                 for kind in time_forms(cells)
             ]
-            return [numbers, *filter(None, forms)]
+            return [numbers, *forms]
         if self._type.is_temporal():
             return [(_seconds,)]
         if self._type.is_numeric():

@@ -163,7 +163,7 @@ def _stated(one: Property) -> tuple[str, Start]:
     if one.text.isdigit() and is_universal(np.array([float(one.text)]), 'filetime'):
         scale, offset = SCALES['filetime']
         return 'moment', Start(one.text, one.row, {'': float(one.text) * scale + offset})
-    for text in (one.text, one.text.split(',')[0]):  # another cell may follow
+    for text in (one.text, re.split(',', one.text)[0]):  # another cell may follow
         found = moments_of(text)
         for kind in ('moment', 'day', 'hours'):
             moments = {form.order: moment for moment, form in found if form.kind == kind}
@@ -242,7 +242,7 @@ def date_in_name(name: str, order: str = '') -> datetime.datetime | None:
     """
     Return the first date in a name, with the time of day if it follows, None for none.
 
-    It is None as well where several orders of the date are possible, and `order` is none of them.
+    It is None as well where several orders of the date are possible, and `order` states no one.
 
     """
     moment = _first_date(name, IN_NAME).by(order)

@@ -11,7 +11,7 @@ without a time, or before the times above, and are further apart, or go far back
 from collections.abc import Sequence
 
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.estimates import usual_step
+from ballscrew_monitor.recordings.tables.estimates import NEAR, usual_step
 from ballscrew_monitor.recordings.tables.time_gate import Run
 import numpy as np
 
@@ -44,7 +44,8 @@ def other_table(times: Array, row: int, step: float) -> str:
             continue
         if _is_other(before, part, step, is_apart=not known[begin - 1]):
             words = f'{_rows(row + begin, row + end - 1)} {_distance(part)}'
-            return f'{words} not as those above, which are {step:.3g} s apart'
+            zeros = _without_zeros(part[-1] - part[0], usual_step(part), step)
+            return f'{words} not as those above, which are {step:.3g} s apart{zeros}'
         far = FAR * np.ptp(before)
         goes_back = before.max() - part[0] > far and np.diff(before).min() >= -far
         is_run = len(part) > 1 and step / OTHER < usual_step(part) < step * OTHER
@@ -68,7 +69,8 @@ def rows_above(runs: Sequence[Run], step: float) -> str:
     if apart <= step * OTHER:
         return ''
     words = f'{_rows(first.row, first.last)} above the log are {apart:.3g} s apart'
-    return f'{words}, not as those below, which are {step:.3g} s apart'
+    zeros = _without_zeros(first.end - first.begin, apart, step)
+    return f'{words}, not as those below, which are {step:.3g} s apart{zeros}'
 
 
 def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> bool:
@@ -81,6 +83,16 @@ def _is_other(before: Array, part: Array, step: float, *, is_apart: bool) -> boo
     if len(part) < 2:
         return is_apart and part[0] - before[-1] > LONG * step
     return (is_apart or len(part) >= AGAIN) and not step / OTHER < usual_step(part) < step * OTHER
+
+
+def _without_zeros(span: float, apart: float, step: float) -> str:
+    """Return a hint if rows within a second [s] are ten or a hundred usual steps apart."""
+    if span >= 1.0 or all(abs(apart / step / times - 1.0) > NEAR for times in (10.0, 100.0)):
+        return ''
+    return (
+        ', as milliseconds are that are written without leading zeros (then state time.rate_Hz '
+        'instead of time.column in the map)'
+    )
 
 
 def _rows(first: int, last: int) -> str:

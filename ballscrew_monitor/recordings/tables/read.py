@@ -216,7 +216,7 @@ def look_through(
                 doubts.setdefault(sign, doubt)
             if fault := cells.signs.fault(sample.texts(name), decision.sign):
                 doubts.setdefault('.', f'{cells.where} {fault}')
-            if not shown_order and (doubt := cells.doubt()):
+            if doubt := cells.doubt(shown_order):
                 doubts.setdefault('order', doubt)
     return Table(
         path=source.path,

@@ -89,7 +89,7 @@ LETTERS = 'dmy', 'mdy', 'ymd'
 
 
 def in_order(texts, form):
-    """Return the days of texts by the calendar of Python, None where one is none since 1990."""
+    """Return the days of texts by the calendar of Python, None for other texts."""
     try:
         days = [dt.datetime.strptime(text, form).replace(tzinfo=dt.UTC) for text in texts]
     except ValueError:
@@ -154,6 +154,15 @@ def test_rows_that_go_on_through_midnight_show_the_order_of_their_dates(form, or
     cells, numbers = read_column(texts)
     assert (cells.doubt(), cells.order) == ('', order)
     np.testing.assert_allclose(numbers, [one.timestamp() for one in moments], atol=1e-6)
+
+
+def test_an_order_of_the_map_leaves_dates_alone_that_do_not_have_it():
+    for order in ('mdy', 'ymd'):
+        _, numbers = read_column(['14/07/2025' if order == 'ymd' else '14.07.2025'], order=order)
+        assert numbers[0] == dt.datetime(2025, 7, 14, tzinfo=dt.UTC).timestamp()
+    cells, _ = read_column(['25.07.11'], order='mdy')
+    assert '{order: dmy}' in cells.doubt('mdy')
+    assert not cells.doubt('ymd')
 
 
 def test_days_that_lie_apart_show_no_order():

@@ -128,3 +128,20 @@ def test_rows_that_come_late_or_miss_are_of_the_log(rate, late, lost, unknown):
         times.insert(at + later, times.pop(at))
     kept = np.delete(np.array(times), lost)
     assert not other_table(kept, 2, 1.0 / rate)
+
+
+@pytest.mark.parametrize(
+    ('first', 'step', 'seconds', 'rows'),
+    [(0, 20, 0.2, '2 to 6 above'), (104, 4, 0.04, '229 to 250'), (250, 1, 0.01, '762 to 851')],
+)
+def test_milliseconds_without_zeros_are_offered_a_rate(first, step, seconds, rows, tmp_path, says):
+    """Some controls write 8:00:01.4 four milliseconds after the second."""
+    stamps = [divmod(first + step * at, 1000) for at in range(1100)]
+    lines = [f'2025-03-14 08:00:{s:02}.{part};{at % 7}' for at, (s, part) in enumerate(stamps)]
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join(['Time;x velocity [mm/s]', *lines]))
+    with pytest.raises(InputError) as caught:
+        read(path)
+    assert f'rows {rows}' in f'{caught.value}'
+    assert f'{seconds:g} s apart, not as those' in f'{caught.value}'
+    assert says('without_zeros', step=f'{step / 1000:g}') in f'{caught.value}'
