@@ -97,7 +97,8 @@ def period(motions: Sequence[tuple[Array, Array]]) -> float:
         good = np.isfinite(mean) & np.isfinite(moved)
         across += float(moved[good] @ mean[good])
         along += float(mean[good] @ mean[good])
-    return across / along if across > 0.0 and 0.0 < along < math.inf else math.nan
+    step = across / along if along > 0.0 else math.nan
+    return step if 0.0 < step < math.inf else math.nan
 
 
 def largest_speed_unit(largest: float) -> tuple[str, str]:
