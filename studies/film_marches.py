@@ -23,6 +23,8 @@ from surrogate.asperities.law import FILM_BANDS, FILM_POWER
 from surrogate.asperities.running_in import RunningContact, tile_size
 from surrogate.asperities.strips import raceway_strips, RacewayStrip
 from surrogate.asperities.topography import (
+    HIGHER,
+    isotropy,
     lay_of,
     left_by_rolling,
     LOAD_SHARE,
@@ -206,7 +208,13 @@ def sheet_of(case: Case) -> Screw:
 
 
 def strip_of(case: Case) -> RacewayStrip:
-    """Return the strip of a case."""
+    """
+    Return the strip of a case.
+
+    Isotropic raceways that ran in are cut as `run_in` does, all others where their summits carry
+    the hardness, as they were marched.
+
+    """
     lubricant = load_lubricant(case.oil)
     state = lubricant_state(lubricant, case.temperature_degC + ZERO_CELSIUS)
     oil = ContactLubricant(
@@ -214,6 +222,8 @@ def strip_of(case: Case) -> RacewayStrip:
     )
     floor, screw, side = 1e-9 * case.floor_nm, sheet_of(case), cast('Side', case.side)
     (strip,) = raceway_strips(screw, side, oil, floor, draws=[case.draw], waves=case.waves)
+    if (case.lay, case.state) == (ISO, 'run_in'):
+        return strip
     running, shortest = RunningContact.of(screw, side), strip.shortest
     size, shape = tile_size(running, shortest=shortest)
     tile = draw_tile(running.waves[0], case.draw, size=size, shape=shape, shortest=shortest)
@@ -286,7 +296,7 @@ def told_over_marched(row: Marched) -> float:
     """Return the film at the onset by the law, on the nodes of marches, over that marched [-]."""
     cut = row.gap_nm / (UNCUT * row.left_nm)
     height = 1e-9 * row.gap_nm * (1e-6 * row.wave_um) ** WAVE_POWER
-    height *= cut ** (RIDGE_POWER * row.slopes)
+    height *= cut ** (RIDGE_POWER * row.slopes) * math.exp(HIGHER * isotropy(row.slopes))
     film = film_at_onset(height, 1e-9 * row.floor_nm, 1e9 * row.pressure_GPa)
     return float(film) / COARSE_FILM / (1e-9 * row.film_nm)
 

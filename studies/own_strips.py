@@ -13,7 +13,7 @@ tells those that were held out.
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 import math
 from pathlib import Path
 import time
@@ -63,7 +63,8 @@ class Strip:
     A strip of an own screw, by its number among `OWN`: draw, side, onsets, marched and told [m/s].
 
     Film at the marched onset over that of the law [-], shortest wave [um], steps, processor time
-    [s], status; NaN where no onset was found.
+    [s], status, share of the steps about the onset that failed [-]; NaN where no onset was found.
+    A law that changes tells the onset and the film anew, of the strip as it was marched.
 
     """
 
@@ -79,6 +80,7 @@ class Strip:
     steps: int
     seconds: float
     status: str
+    failed_share: float = math.nan
 
 
 ISO, LON, TRA = 'isotropic', 'longitudinal', 'transverse'
@@ -103,6 +105,14 @@ OWN = (
     Own('50x10', 0.1, ISO, fractal_dimension=2.6, oil='iso_vg_100'),
     Own('40x10', 0.16, TRA, oil='iso_vg_100', conformity=0.525),
     Own('16x5', 0.3, LON, fan_deg=3.0, preload=1.2),
+    Own('32x10', 0.1, ISO, 'new', fractal_dimension=2.55, preload=0.8),
+    Own('nominal', 0.3, ISO, 'new'),
+    Own('40x10', 0.3, ISO, fractal_dimension=2.4),
+    Own('50x10', 0.06, ISO, 'new', fractal_dimension=2.6, oil='iso_vg_32'),
+    Own('63x20', 0.15, ISO, oil='iso_vg_32'),
+    Own('25x5', 0.15, ISO, 'new', fractal_dimension=2.45, preload=1.2, conformity=0.525),
+    Own('16x5', 0.06, ISO, fractal_dimension=2.6, preload=0.7),
+    Own('20x5', 0.35, ISO, 'new', oil='iso_vg_100', cutoff_long_mm=0.8),
 )
 """Own screws, in an order in which each part spans lays, states and sizes."""
 
@@ -144,8 +154,9 @@ def march(number: int, name: str, lay: str, task: dict[str, Any]) -> Strip:
     """March a strip of an own screw."""
     began = time.process_time()
     found = march_task(task)
-    onset, factor = (
-        math.nan if found[key] is None else found[key] for key in ('marched_m_s', 'film_factor')
+    onset, factor, failed = (
+        math.nan if found[key] is None else found[key]
+        for key in ('marched_m_s', 'film_factor', 'failed_share')
     )
     return Strip(
         own=number,
@@ -160,6 +171,7 @@ def march(number: int, name: str, lay: str, task: dict[str, Any]) -> Strip:
         steps=found['steps'],
         seconds=time.process_time() - began,
         status=found['status'],
+        failed_share=failed,
     )
 
 
@@ -187,9 +199,7 @@ def within(rows: Sequence[Strip], lay: str, states: Sequence[str]) -> tuple[floa
 
 def held_out(strips: Mapping[str, Strip], name: str) -> tuple[float, float] | None:
     """Return logarithms [-]: how far a strip is off from what the others tell, and its band."""
-    others = {
-        other: {'film_factor': row.film_factor} for other, row in strips.items() if other != name
-    }
+    others = {other: asdict(row) for other, row in strips.items() if other != name}
     own = OWN[next(iter(strips.values())).own]
     known = marched_film(others, cast('Lay', own.lay), cast('State', own.state))
     if name not in strips or not known:

@@ -179,8 +179,10 @@ def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
                 f'begins at {marched:.3g} m/s, with {strip["film_factor"]:.2f} times the film of '
                 f'the law, told over marched {by_law / marched:.2f}'
             )
-        failed = 100 * (strip.get('failed_share') or 0.0)
-        about = f' {failed:.0f} % of the steps about the onset failed.' if failed else ''
+        about = ''
+        if marched is not None and (share := strip.get('failed_share')) != 0.0:
+            part = 'an unknown share' if share is None else f'{100 * share:.0f} %'
+            about = f' Of the steps about the onset {part} failed.'
         yield (
             f'{name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: contact {begins}, '
             f'told {by_law:.3g} m/s; {strip["status"]}{about}'

@@ -54,7 +54,7 @@ NEW = 'isotropic', 'new'
 
 def test_a_strip_of_long_waves_begins_to_touch_near_what_the_law_tells(screw, oil, monkeypatch):
     """Within the 1.6 by which the law misses raceways without waves below 10 um."""
-    tasks = march_tasks(screw, oil, waves=2.0, transits=6.0)
+    tasks = march_tasks(screw, oil, waves=3.0, transits=6.0)
     assert [*tasks] == [FINER, 'strip 1', 'strip 2', 'strip 3']
     found = march_task(json.loads(json.dumps(tasks['strip 1'])))
     assert json.loads(json.dumps(found)) == found
@@ -63,7 +63,7 @@ def test_a_strip_of_long_waves_begins_to_touch_near_what_the_law_tells(screw, oi
     assert 1 / 1.3 < found['film_factor'] < 1.3
     assert found['failed_share'] == 0.0
     # The finer strip is the first one with a wave more.
-    assert tasks[FINER] == tasks['strip 1'] | {'waves': 2.0 * screw.roughness.scale_ratio}
+    assert tasks[FINER] == tasks['strip 1'] | {'waves': 3.0 * screw.roughness.scale_ratio}
     # What is slower than the onset is not marched, and would hardly move it.
     monkeypatch.setattr(march, 'ENOUGH', math.inf)
     whole = march_task(tasks['strip 1'])
@@ -157,16 +157,38 @@ def test_a_strip_whose_steps_failed_about_the_onset_corrects_nothing(built, caps
     alone = marched_film(good, 'isotropic', 'new')
     bad = good | {'strip 3': strip(factor=1.2, failed=0.3)}
     assert marched_film(bad, 'isotropic', 'new') == alone
-    old = {name: {'film_factor': one['film_factor']} for name, one in good.items()}
-    assert marched_film(old, 'isotropic', 'new') == alone
     data, sheet = built({0: strip(failed=0.3), 1: strip(failed=0.5), 2: strip()})
     assert sheet.roughness.marched_film is None
     err = capsys.readouterr().err
     assert 'strip 2: 50 % of the steps about the onset did not converge' in err
     assert 'too few strips show where contact begins' in err
     told = {line.partition(',')[0]: line for line in march_lines(data.header['march'])}
-    assert told['strip 2'].endswith('; well 50 % of the steps about the onset failed.')
+    assert told['strip 2'].endswith('; well Of the steps about the onset 50 % failed.')
     assert told['strip 3'].endswith('; well')
+
+
+@pytest.mark.parametrize(
+    ('wrong', 'words'),
+    [
+        ({'failed_share': None}, 'it is not stated how many of the steps about the onset failed'),
+        ({'film_factor': 6.1}, 'to touch with 6.1 times the film of the law, allowed is 0.2 to 5'),
+        ({'film_factor': 0.1}, 'to touch with 0.1 times the film of the law, allowed is 0.2 to 5'),
+    ],
+)
+def test_a_strip_that_corrects_nothing_is_told(wrong, words):
+    """An unknown share of failed steps is not none."""
+    good = {'strip 1': strip(factor=0.95), 'strip 2': strip(factor=1.05)}
+    bad = {**good, 'strip 3': strip() | wrong}
+    assert marched_film(bad, *NEW) == marched_film(good, *NEW)
+    (told,) = doubtful_strips(bad, {'lay': 'isotropic', 'state': 'new'})
+    assert told.startswith('strip 3: ') and words in told
+    assert told.endswith('it does not correct the law')
+
+
+def test_a_header_without_the_share_of_failed_steps_says_that_it_is_unknown():
+    old = {name: value for name, value in strip().items() if name != 'failed_share'}
+    (line,) = march_lines({'strip 1': old})
+    assert line.endswith('; well Of the steps about the onset an unknown share failed.')
 
 
 def test_a_finer_strip_that_moves_the_onset_is_told():
