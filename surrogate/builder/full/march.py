@@ -167,7 +167,7 @@ def log_factors(strips: Strips) -> dict[str, float]:
 
 
 def failed_share(strip: Mapping[str, Any]) -> float:
-    """Return the share of the steps about the onset that failed [-]; NaN where it is not stated."""
+    """Return the share of the steps about the onset that failed [-]; NaN if it is not stated."""
     share = strip.get('failed_share')
     return math.nan if share is None else float(share)
 

@@ -185,7 +185,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
     assert run('info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
-        'Contact begins at 317 rev/min at 40 degC; this screw',
+        'Contact begins at 332 rev/min at 40 degC; this screw',
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
         'raceway (new): Rq 0.12 um between 2.5 um and 0.25 mm',
         'tier         closed_form, format version 4',

@@ -137,6 +137,6 @@ def test_many_points_are_many_single_points(screw, oil):
 
 def test_worst_contact_is_that_which_touches_most_else_the_thinnest_film(screw, oil):
     """The relieved nut, whose summits are pressed less flat; the tighter, heavier loaded side."""
-    touching, lifted = (solve(screw, oil, rpm, 1000.0) for rpm in (600.0, 5000.0))
+    touching, lifted = (solve(screw, oil, rpm, 1000.0) for rpm in (300.0, 5000.0))
     assert touching.worst_contact == 3
     assert (float(lifted.rcs), lifted.worst_contact) == (0.0, 0)

@@ -180,7 +180,7 @@ def test_the_record_says_where_contact_is_from():
     )
     assert new == (
         'roughness that rolls, new, summits cut at 7 GPa; film at the onset by the topography, '
-        'within 1.25 of nine of ten marches'
+        'within 1.15 of nine of ten marches'
     )
     assert 'rolls, run in, summits cut at 3 GPa; film' in run_in
     assert law_sentence(with_raceway(SCREW, rms=0.0), SETTINGS) == 'no roughness'

@@ -39,14 +39,6 @@ def test_torque_falls_when_slow_and_rises_when_fast():
     assert 0.3 < rising < 0.7
 
 
-def test_torque_over_preload_lies_between_those_of_the_powers_of_a_contact():
-    """Between half of it, as rolling, and 4/3, as sliding over the width of a Hertz contact."""
-    low, middle, high = drag.PRELOADS
-    slow, fast = (2 * middle**p / (low + high**p) for p in (4 / 3, 0.5))
-    (ratio,) = drag.drag_over_preload(ValidationCase())
-    assert slow < ratio < fast
-
-
 def test_told_over_measured_torque_rises_with_the_diameter():
     """The drag of catalogues goes with the root of the circle over the lead."""
     told = drag.drag_over_measured(None)

@@ -10,6 +10,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 from surrogate.files import json_text
+from surrogate.studies.drag import PRELOADS
 from surrogate.studies.validation import (
     compared,
     LOADS,
@@ -91,6 +92,15 @@ def test_the_torque_under_other_laws(record):
     assert high == pytest.approx(plain, rel=1e-4)
     assert low == pytest.approx(plain, rel=1e-4)
     assert thin < plain < thick < limited[0] < limited[1]
+
+
+@pytest.mark.long
+def test_torque_over_preload_lies_between_those_of_the_powers_of_a_contact(record):
+    """Between half of it, as rolling, and 4/3, as sliding over the width of a Hertz contact."""
+    low, middle, high = PRELOADS
+    slow, fast = (2 * middle**p / (low + high**p) for p in (4 / 3, 0.5))
+    (row,) = (one for one in record['comparisons'] if one['what'].endswith('4, 100 rev/min'))
+    assert slow < row['ours'][0] < fast
 
 
 @pytest.mark.long

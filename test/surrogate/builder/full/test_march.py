@@ -181,7 +181,8 @@ def test_a_strip_that_corrects_nothing_is_told(wrong, words):
     bad = {**good, 'strip 3': strip() | wrong}
     assert marched_film(bad, *NEW) == marched_film(good, *NEW)
     (told,) = doubtful_strips(bad, {'lay': 'isotropic', 'state': 'new'})
-    assert told.startswith('strip 3: ') and words in told
+    assert told.startswith('strip 3: ')
+    assert words in told
     assert told.endswith('it does not correct the law')
 
 
