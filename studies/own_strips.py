@@ -64,7 +64,7 @@ class Strip:
 
     Film at the marched onset over that of the law [-], shortest wave [um], steps, processor time
     [s], status, share of the steps about the onset that failed [-]; NaN where no onset was found.
-    A law that changes tells the onset and the film anew, of the strip as it was marched.
+    After a change of the law it tells onset and film of the strip as that was marched.
 
     """
 

@@ -55,7 +55,7 @@ class SurfaceSettings:
     load_range: tuple[float, float]
     temperature_range: tuple[float, float]
     speed_nodes: int = 40
-    load_cells: int = 12
+    load_cells: int = 13
     unloaded_cells: int = 3
     temperature_nodes: int = 9
 

@@ -191,8 +191,8 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         'tier         closed_form, format version 4',
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
-        'nodes        40 x 31 x 9, 0 without a number',
-        'friction_torque [N m]                        0.0015',
+        'nodes        40 x 33 x 9, 0 without a number',
+        'friction_torque [N m]                        0.00148',
         'numpy        ',
     ):
         assert part in text

@@ -212,7 +212,7 @@ def test_derived_numbers_follow_from_the_torque(shipped):
 
 def test_worst_contact_and_errors_are_told():
     """The worst contact is the relieved nut's nut side; the cell's errors are its own."""
-    found = SHIPPED.lookup(62.8, 1000.0, 313.15)
+    found = SHIPPED.lookup(31.4, 1000.0, 313.15)
     assert (found.worst_nut, found.worst_side) == (2, 2)
     assert 0 < found.rcs_error < 0.003
     assert 0 < found.efficiency_error < 0.003

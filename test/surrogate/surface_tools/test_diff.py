@@ -44,7 +44,7 @@ def test_equal_surfaces_do_not_differ(run, capsys):
     found = json.loads(capsys.readouterr().out)
     assert {gap['max'] for gap in found['fields'].values()} == {0.0}
     assert found['zone']['largest_shift_slow'] == found['zone']['largest_shift_fast'] == 0.0
-    assert found['points'] == 10 * (30 + 2) * (8 + 2)
+    assert found['points'] == 10 * (32 + 2) * (8 + 2)
     assert found['exceeded'] == []
 
 

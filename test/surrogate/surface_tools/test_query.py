@@ -61,7 +61,7 @@ def test_a_page_says_what_is_known(run, capsys, says):
     assert says('tier_closed_form_600') in text
     assert says('efficiency_0_9358') in text
     assert 'regime               mixed' in text
-    assert 'worst contact        relieved nut, nut' in text
+    assert 'worst contact        relieved nut, screw' in text
 
 
 def test_a_typical_drag_is_the_band_of_torque_and_efficiency(run, capsys, tmp_path, query):
