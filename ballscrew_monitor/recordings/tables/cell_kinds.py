@@ -9,7 +9,7 @@ number has none.
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 import dataclasses
 from pathlib import Path
 import posixpath
@@ -22,7 +22,7 @@ import polars as pl
 from surrogate.files import InputError
 
 TAG = re.compile(
-    rb'<(?:\w+:)?(?:(?P<row>row)|c)(?=[\s/>])(?P<told>[^>]*?)(?P<empty>/?)>(?P<bare>\s*</)?'
+    rb'<(?:\w+:)?(?:(row)|c)(?=[\s/>])(?: r="([A-Za-z]*)(\d+)")?([^>]*?)(/?)>(\s*</)?'
 )
 """The beginning of a row, or of a cell; one that is empty, or ends at once, has no value."""
 REFERENCE = re.compile(rb'\br\s*=\s*["\']([A-Za-z]*)(\d+)["\']')
@@ -30,6 +30,10 @@ KIND = re.compile(rb'\bt\s*=\s*["\'](s|str|inlineStr|e)["\']')
 STYLE = re.compile(rb'\bs\s*=\s*["\'](\d+)["\']')
 VALUE = re.compile(rb'<(?:\w+:)?v\b[^>]*>([^<]*)<')
 BOOK, RELATIONS, STYLES = 'xl/workbook.xml', 'xl/_rels/workbook.xml.rels', 'xl/styles.xml'
+STRINGS = 'xl/sharedstrings.xml'
+NOT_SHARED = re.compile(rb'\bt\s*=\s*["\'](?:e|str|inlineStr)["\']')
+SIGN = re.compile(rb'\d[.,]|[.,]\d')
+"""Cells of a sheet that are errors or texts by themselves, and signs in texts that it shares."""
 SHEET = re.compile(rb'<(?:\w+:)?sheet\s[^>]*?\w+:id\s*=\s*["\']([^"\']*)["\']')
 RELATION = re.compile(rb'<(?:\w+:)?Relationship\s([^>]*)>')
 FORMAT = re.compile(rb'<(?:\w+:)?numFmt\s([^>]*)>')
@@ -110,37 +114,69 @@ def _kinds(archive: zipfile.ZipFile, number: int) -> _Kinds:
     """Return which cells of a sheet are texts, errors and shares."""
     kinds, shares = _Kinds(), _shares(archive)
     text = archive.read(_part(archive, number))
-    for row, column, match in _cells(text):
-        if match['empty'] or match['bare']:
-            continue
-        kinds.first = [min(kinds.first[0], row), min(kinds.first[1], column)]
-        kinds.last = [max(kinds.last[0], row), max(kinds.last[1], column)]
-        kind, style = KIND.search(match['told']), STYLE.search(match['told'])
-        if kind and kind[1] == b'e':
-            value = VALUE.match(text, match.end())
-            told = value[1].decode(errors='replace') if value else '#ERROR'
-            kinds.errors.setdefault(column, {})[row] = told
-        elif kind:
+    strings = _part_called(archive, STRINGS)
+    if not shares and not NOT_SHARED.search(text) and not SIGN.search(strings):
+        return kinds  # its cells are true numbers, dates and words
+    known: dict[bytes, str] = {}
+    first_row, first_column = kinds.first
+    last_row, last_column = kinds.last
+    for row, column, told, end in _cells(text):
+        first_row, last_row = min(first_row, row), max(last_row, row)
+        first_column, last_column = min(first_column, column), max(last_column, column)
+        kind = known.get(told)
+        if kind is None:
+            kind = known[told] = _kind(told, shares)
+        if kind == 'error':
+            value = VALUE.match(text, end)
+            shown = value[1].decode(errors='replace') if value else '#ERROR'
+            kinds.errors.setdefault(column, {})[row] = shown
+        elif kind == 'text':
             kinds.texts.setdefault(column, []).append(row)
-        elif style and int(style[1]) in shares:
+        elif kind:
             kinds.shares.setdefault(column, []).append(row)
+    kinds.first, kinds.last = [first_row, first_column], [last_row, last_column]
     return kinds
 
 
-def _cells(text: bytes) -> Iterator[tuple[int, int, re.Match[bytes]]]:
-    """Yield row, column and beginning of each cell; one without reference follows the last."""
+def _kind(told: bytes, shares: Collection[int]) -> str:
+    """Return the kind of a cell by its attributes, empty for a number that is shown as it is."""
+    kind, style = KIND.search(told), STYLE.search(told)
+    if kind:
+        return 'error' if kind[1] == b'e' else 'text'
+    return 'share' if style and int(style[1]) in shares else ''
+
+
+def _cells(text: bytes) -> Iterator[tuple[int, int, bytes, int]]:
+    """
+    Yield row, column, attributes and where the value begins, of each cell that has one.
+
+    A cell without a reference follows the one before.
+
+    """
     row = column = 0
+    columns: dict[bytes, int] = {}
     for match in TAG.finditer(text):
-        place = REFERENCE.search(match['told'])
-        if match['row']:
-            row, column = int(place[2]) if place else row + 1, 0
+        is_row, letters, digits, told, empty, bare = match.groups()
+        if not digits and (place := REFERENCE.search(told)):
+            letters, digits = place.groups()
+            told = told.replace(place[0], b'')
+        if is_row:
+            row, column = int(digits) if digits else row + 1, 0
             continue
         column += 1
-        if place:
-            row, column = int(place[2]), 0
-            for letter in place[1].upper():
-                column = LETTERS * column + letter - ord('A') + 1
-        yield row, column, match
+        if digits:
+            row = int(digits)
+            column = columns.get(letters) or columns.setdefault(letters, _number(letters))
+        if not empty and not bare:
+            yield row, column, told, match.end()
+
+
+def _number(letters: bytes) -> int:
+    """Return the number of a column, that of A is 1."""
+    number = 0
+    for letter in letters.upper():
+        number = LETTERS * number + letter - ord('A') + 1
+    return number
 
 
 def _part(archive: zipfile.ZipFile, number: int) -> str:
@@ -154,10 +190,15 @@ def _part(archive: zipfile.ZipFile, number: int) -> str:
     raise KeyError(identity.decode())
 
 
+def _part_called(archive: zipfile.ZipFile, name: str) -> bytes:
+    """Return a part of a workbook that it need not have, by its name in small letters."""
+    names = {one.lower(): one for one in archive.namelist()}
+    return archive.read(names[name]) if name in names else b''
+
+
 def _shares(archive: zipfile.ZipFile) -> set[int]:
     """Return the numbers of the styles that show a number in per cent."""
-    names = {name.lower(): name for name in archive.namelist()}
-    text = archive.read(names[STYLES]) if STYLES in names else b''
+    text = _part_called(archive, STYLES)
     formats = PERCENT | {
         int(_attribute(b'numFmtId', told))
         for told in FORMAT.findall(text)

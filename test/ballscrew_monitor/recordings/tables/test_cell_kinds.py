@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cells of workbooks that another writer made: errors, per cents and texts are what they were."""
 
+import re
+import zipfile
+
 from ballscrew_monitor.recordings.tables import cell_kinds
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -87,6 +90,39 @@ def test_a_sheet_whose_cells_are_counted_otherwise_is_refused(sheet, refused, mo
     log = sheet(columns_of(['#N/A'] * COUNT))
     counted = cell_kinds._cells
     monkeypatch.setattr(
-        cell_kinds, '_cells', lambda text: ((row, 1, match) for row, _, match in counted(text))
+        cell_kinds, '_cells', lambda text: ((row, 1, *others) for row, _, *others in counted(text))
     )
     refused('counted', source_of, log)
+
+
+@pytest.mark.parametrize(('text', 'is_number'), [('5.400', True), ('slow', False)])
+def test_texts_that_a_workbook_shares_are_looked_at(text, is_number, sheet, tmp_path, refused):
+    """Spreadsheets write texts once and refer to them, openpyxl here writes them in the cells."""
+    log, shared = sheet({'t': [0.125, 0.25, 0.375], 'v': [text, 5, 6]}), tmp_path / 'shared.xlsx'
+    with zipfile.ZipFile(log) as old, zipfile.ZipFile(shared, 'w') as new:
+        strings: list[str] = []
+
+        def refer(match: re.Match[str]) -> str:
+            strings.append(match[1])
+            return f't="s"><v>{len(strings) - 1}</v>'
+
+        for name in old.namelist():
+            content = old.read(name).decode()
+            if name == 'xl/worksheets/sheet1.xml':
+                content = re.sub(r't="inlineStr"><is><t>(.*?)</t></is>', refer, content)
+                assert len(strings) == 3
+            kind = 'officedocument.spreadsheetml.sharedStrings+xml'
+            content = content.replace(
+                '</Types>',
+                '<Override PartName="/xl/sharedStrings.xml" '
+                f'ContentType="application/vnd.openxmlformats-{kind}"/></Types>',
+            )
+            new.writestr(name, content)
+        rows = ''.join(f'<si><t>{one}</t></si>' for one in strings)
+        space = 'http://schemas.openxmlformats.org/spreadsheetml/2006/main'
+        new.writestr('xl/sharedStrings.xml', f'<sst xmlns="{space}">{rows}</sst>')
+    if is_number:
+        refused('shared', open_table, shared, ['t', 'v'])
+    else:
+        assert open_table(shared, ['t', 'v']).head(9)['v'].tolist()[1:] == [5.0, 6.0]
+    assert open_table(shared, ['t']).head(9)['t'].tolist() == [0.125, 0.25, 0.375]
