@@ -108,7 +108,8 @@ SHORT = {
 }  # fmt: skip
 """Letters of quantities that stand alone beside the letter of an axis."""
 JOINED = re.compile(
-    r'^(?:(?P<axis>[xyzXYZ](?:I(?=\d))?\d?)(?P<word>act[mw]?|com|abs|pos(?:ition)?|vel(?:ocity)?|load|frt|[vfips])|'
+    r'^(?:(?P<axis>[xyzXYZ](?:I(?=\d))?\d?)(?P<word>act[mw]?|com|abs|'
+    r'pos(?:ition)?|vel(?:ocity)?|load|frt|[vfips])|'
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """
