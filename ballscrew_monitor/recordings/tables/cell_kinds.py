@@ -17,6 +17,7 @@ import re
 import sys
 import zipfile
 
+from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.signs import signless
 import polars as pl
 from surrogate.files import InputError
@@ -66,7 +67,7 @@ def with_kinds(path: str, number: int, cells: pl.DataFrame) -> tuple[pl.DataFram
     cannot be told apart.
 
     """
-    with zipfile.ZipFile(Path(path)) as archive:
+    with readable(f'log {path} cannot be read', Exception), zipfile.ZipFile(Path(path)) as archive:
         kinds = _kinds(archive, number)
     origin = kinds.first
     shape = tuple(max(last - one, -1) + 1 for one, last in zip(origin, kinds.last, strict=True))
