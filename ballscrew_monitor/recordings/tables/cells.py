@@ -263,6 +263,12 @@ class Cells:
         )
 
     @property
+    def is_dotted(self) -> bool:
+        """Return True if points part its dates, which may be of several orders."""
+        dates, _ = self._dates()
+        return len(dates) > 1 and all('%m.' in getattr(one.form, 'pattern', '') for one in dates)
+
+    @property
     def decided(self) -> str:
         """Return in words why its dates are of an order, empty where no other one is possible."""
         dates, why = self._dates()

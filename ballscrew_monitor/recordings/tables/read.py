@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.dates import start_in_head
 from ballscrew_monitor.recordings.tables.marks import Marks
-from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
+from ballscrew_monitor.recordings.tables.quantities import Layout, ORDERS, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
 from ballscrew_monitor.recordings.words import counted, listed, short, Shown, shown_progress
@@ -29,6 +29,7 @@ import polars as pl
 from surrogate.files import InputError
 
 SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
+GERMAN = 'dmy'  # order of dates that points part beside a decimal comma
 PIECE, MOST_ROWS = 2048, 150_000  # rows of a piece of a sample, and of all of its pieces
 WORD, ROW = r'^\s*"?[\[(]?\p{L}', '\0row'
 
@@ -202,6 +203,9 @@ def look_through(
     short_rows = _short_rows(source, rows)
     decision = _decision(source, columns, decimal)
     shown_order = order or _order(source, columns)
+    may_be_german = decision.sign == ',' and not shown_order
+    german = [one for one in columns.values() if may_be_german and one.is_dotted]
+    shown_order = GERMAN if german else shown_order
     readings: dict[str, Reading] = {}
     doubts: dict[str, str] = {}
     for name, cells in columns.items():
@@ -228,6 +232,11 @@ def look_through(
             *(one.note for one in readings.values() if one.note),
             *(one.decided for name, one in columns.items() if name in readings and one.decided),
             *_decided(source, columns, decision),
+            *(
+                f'{one.where} holds dates of {ORDERS[GERMAN]}: points part them, and the comma is '
+                'decimal'
+                for one in german
+            ),
         ),
         left_out=left_out,
         doubts=doubts,

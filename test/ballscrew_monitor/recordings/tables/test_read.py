@@ -154,6 +154,21 @@ def test_a_last_column_of_comments_may_be_left_out_of_a_row(seen, tmp_path):
     assert table.head(99)['v'].tolist() == [2 * row for row in range(40)]
 
 
+@pytest.mark.parametrize(('sign', 'is_german'), [(',', True), ('.', False)])
+def test_dates_with_points_beside_a_decimal_comma_begin_with_the_day(
+    sign, is_german, tmp_path, says, refused
+):
+    rows = [f'14.07.25 08:00:{at:02d};{at}{sign}5;0' for at in range(20)]
+    path = text_log(tmp_path, '\n'.join(['t;v;w', *rows, '']))
+    if not is_german:
+        refused('several_dates', open_table, path, ['t', 'v'])
+        return
+    table = open_table(path, ['t', 'v'])
+    begin = dt.datetime(2025, 7, 14, 8, tzinfo=dt.UTC).timestamp()
+    np.testing.assert_array_equal(table.head(99)['t'], begin + np.arange(20.0))
+    assert says('dates_with_points', path=path) in table.notes
+
+
 def test_times_of_day_become_seconds(tmp_path):
     text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
     values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
