@@ -12,7 +12,7 @@ from scenario import LimitPoint, PERIOD, Span
 
 FEED, CREEP, LOAD, OIL = 900.0, 150.0, 1000.0, 40.0
 CLEAR_DELAY = 1.0  # [s] of the parameters
-LIMIT_SPEED = 351.0  # [rev/min] at which asperities begin to touch under LOAD in oil of OIL
+LIMIT_SPEED = 401.0  # [rev/min] at which asperities begin to touch under LOAD in oil of OIL
 RAMP = 0.1  # [s] of a change of speed or load
 LATE = PERIOD + 0.001  # [s] by which a sample may come after what it shows
 TOUCHING = LimitPoint(quantity='rcs', value=0.01, speed=LIMIT_SPEED, load=LOAD, oil=OIL)

@@ -56,7 +56,7 @@ def vertical_axis() -> Scenario:
     )
     held = WEIGHT * LEAD / (2 * math.pi)
     more, less = (held + 0.02, held + 0.30), (0.02 - held, 0.30 - held)  # of any sane friction
-    limit = 350.0
+    limit = 410.0
     # The creeping begins from a stop: outside as soon as the screw is not at standstill.
     start = speed.pass_between(-0.5 / RPM, -0.5 / RPM, 2)
     return Scenario(

@@ -236,7 +236,8 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
 def cells_of(lines: Sequence[Line], head: Head) -> dict[str, list[str]]:
     """Return the cells of the columns of a table in its first lines."""
     rows = (cells_of_line(line, head.separator) for line in lines[slice(head.begin, None)])
-    whole = [row for row in rows if len(row) == len(head.names)]
+    count = len(head.names)
+    whole = [row[:count] for row in rows if len(row) >= count]
     return dict(zip(head.names, map(list, zip(*whole, strict=True)), strict=False))
 
 

@@ -20,7 +20,7 @@ from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Rea
 from ballscrew_monitor.recordings.tables.dates import start_in_head
 from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout, ORDERS, OTHER_SIGN
-from ballscrew_monitor.recordings.tables.signs import decide, Decision
+from ballscrew_monitor.recordings.tables.signs import decide, Decision, Signs, THOUSAND
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
 from ballscrew_monitor.recordings.words import counted, listed, short, Shown, shown_progress
 import numpy as np
@@ -305,8 +305,7 @@ def _decision(source: Source, columns: Mapping[str, Cells], stated: str) -> Deci
     """
     Return the decimal sign of a table; columns that are not read are asked where others doubt.
 
-    True numbers of a workbook tell nothing about texts. Between commas a point is decimal, but for
-    a column of 5.400 beside 60, where no rule of decimals leaves the zeros out.
+    True numbers of a workbook tell nothing about texts.
 
     """
     head = source.head
@@ -314,9 +313,7 @@ def _decision(source: Source, columns: Mapping[str, Cells], stated: str) -> Deci
         text = head.properties['decimal'].text.strip()
         stated = text if text in OTHER_SIGN else {'comma': ',', 'point': '.'}.get(text.lower(), '')
     signs = {name: cells.signs for name, cells in columns.items() if name not in source.numeric}
-    is_usual = head.separator == ',' and not any(one.may_part for one in signs.values())
-    usual = '.' if is_usual or source.is_pointed else ''
-    decision = decide(signs, stated, usual)
+    decision = decide(signs, stated, _usual(source, signs))
     if decision.proofs or stated or not any(one.doubtful for one in signs.values()):
         return decision
     first = source.first_rows()
@@ -326,7 +323,21 @@ def _decision(source: Source, columns: Mapping[str, Cells], stated: str) -> Deci
             cells.add(first[name])
             numbers = [one.good for one in cells.numbers]
             signs |= {name: cells.signs} if 2 * max(numbers, default=0) > cells.count else {}
-    return decide(signs, stated, usual)
+    return decide(signs, stated, _usual(source, signs))
+
+
+def _usual(source: Source, signs: Mapping[str, Signs]) -> str:
+    """
+    Return the sign that is decimal where no cell proves it, empty where that is not known.
+
+    Between commas it is the point, if whole numbers above 999 stand without one. In a column of
+    5.400 beside 60 it may part thousands, as no rule of decimals leaves the zeros out.
+
+    """
+    parted = any(one.may_part for one in signs.values())
+    plain = any(one.most_whole >= THOUSAND for one in signs.values())
+    is_usual = source.head.separator == ',' and plain and not parted
+    return '.' if is_usual or source.is_pointed else ''
 
 
 def _check_names(source: Source, names: Collection[str], layout: Layout | None) -> None:

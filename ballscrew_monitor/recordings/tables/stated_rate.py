@@ -117,7 +117,7 @@ def doubts_of_rate(rate: float, inputs: Mapping[str, str], table: Table) -> Iter
         )
     cure = f'name a time as `column` {INSTEAD}, or split the log there'
     cure = f'state {place}' if counter else cure
-    last = table.first_row + table.rows - 1
+    last = table.first_row + table.rows - 1 - torn.blanks * (torn.blank > torn.first)
     odd = [
         (torn.named or _named_again(table), 1, 'names the columns again'),
         (torn.blank, torn.blanks, 'is blank'),

@@ -23,7 +23,7 @@ def courses():
     spreads = [spread_of(array_of(cells_of_year(year)), year.machine.size.lead) for year in years]
     alone, together = [], []
     for at, year in enumerate(years):
-        prior = prior_of([spread for other, spread in enumerate(spreads) if other != at])
+        prior = prior_of([peer for other, (peer, _) in enumerate(spreads) if other != at])
         alone.append(score_of(year, causes=False))
         together.append(score_of(year, judge=partial(looks, prior=prior), causes=False))
     return alone, together

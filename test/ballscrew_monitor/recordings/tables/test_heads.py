@@ -4,7 +4,7 @@
 
 import math
 
-from ballscrew_monitor.recordings.tables.heads import find_head, Line
+from ballscrew_monitor.recordings.tables.heads import cells_of, find_head, Line
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -49,6 +49,13 @@ def test_names_stand_above_the_numbers_in_whatever_way(text, names, first):
     head = head_of(text)
     assert (list(head.names), head.first) == (names, first)
     assert head.named == (names[0] != 'column 1')
+
+
+def test_cells_of_a_column_are_known_where_rows_end_with_a_sign():
+    text = 't;v;F\n' + ''.join(f'{at};{at}.5;{at} N;\n' for at in range(5))
+    lines = [Line(raw=line, row=row + 1) for row, line in enumerate(text.splitlines())]
+    head = find_head(lines)
+    assert cells_of(lines, head)[head.names[2]] == [f'{at} N' for at in range(5)]
 
 
 def test_names_that_repeat_say_of_longer_ones_what_these_are():

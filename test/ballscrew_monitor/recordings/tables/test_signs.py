@@ -226,9 +226,11 @@ def test_a_cell_or_another_column_shows_that_a_point_is_decimal(read, shown):
     assert read(columns, ['t', 'v'])['v'].tolist() == [10.0, 20.5]
 
 
-def test_a_point_between_commas_is_decimal(read):
+def test_a_point_between_commas_is_decimal_where_large_numbers_have_none(read, refused):
     columns = {'t': ['0', '10'], 'v': ['5.400', '5.500'], 'n': ['N 1', '14.07.2025 10:00:00']}
-    assert read(columns, ['t', 'v'], separator=',')['v'].tolist() == [5.4, 5.5]
+    refused('neither', read, columns, ['t', 'v'], separator=',')
+    for large in ({'t': ['0', '1000']}, {'n': ['999', '1480']}):
+        assert read(columns | large, ['t', 'v'], separator=',')['v'].tolist() == [5.4, 5.5]
 
 
 @pytest.mark.parametrize(

@@ -126,9 +126,10 @@ def test_a_blank_line_between_rows_without_times_begins_another_run(columns, tmp
     path = tmp_path / 'log.csv'
     rows = [';'.join([f'{speed:.4f}', '-300.0'][:columns]) for speed in SPEED[:200]]
     head = ['Sample time: 10 ms', ';'.join(['X speed [mm/s]', 'X force [N]'][:columns])]
-    path.write_text('\n'.join([*head, *rows, '', '']))
-    made = guess(path)
-    assert made.content['time'] == {'rate_Hz': RATE}
+    for end in (['', ''], ['', '', ''], ['\t', '']):
+        path.write_text('\n'.join([*head, *rows, *end]))
+        made = guess(path)
+        assert made.content['time'] == {'rate_Hz': RATE}
     path.write_text('\n'.join([*head, *rows, '', *rows, '']))
     made = guess(path)
     assert made.content['time'] == {'rate_Hz': None}
