@@ -43,7 +43,7 @@ HIGHER = 0.11
 73 strips, whose waves are flattened by their directions."""
 ISOTROPIC = 0.2, 0.6
 """Anisotropy of slopes up to which a raceway is isotropic, and from which on it has a lay [-].
-Tiles of isotropic raceways have 0.1 at most, a lay that fans over 90 deg has 0.64."""
+Tiles of isotropic raceways have 0.15 at most, a lay that fans over 90 deg has 0.64."""
 REDUCTIONS = np.geomspace(0.03, 10.0, 8)
 """Reductions of the shortest wave at which heights are tabulated [-]."""
 PRESSURES = np.geomspace(0.15e9, 3e9, 3)
