@@ -128,10 +128,13 @@ class _Conversation:
         if not self._until(client.server_is_ready, wait):
             return self._give_up(silence)
         sent = client.send_goal_async(self._goal, feedback_callback=_show)
-        handle = self._until(lambda: sent.done() and sent.result(), wait)
-        if handle is None:
+        gone = f'{action} is gone, its node has ended'
+        self._until(lambda: sent.done() or not client.server_is_ready(), wait)
+        if not sent.done():
+            silence = silence if client.server_is_ready() else gone
             self._take_back_late(sent)
             return self._give_up(silence)
+        handle = sent.result()
         if not handle.accepted:
             self._until(lambda: refusals, max(wait, LAST_WORD))
             return _complain(refusals[-1] if refusals else REJECTED)
@@ -143,7 +146,7 @@ class _Conversation:
             self._take_back(handle)
             return INTERRUPTED
         if not answer.done():
-            return _complain(f'{action} is gone, its node has ended')
+            return _complain(gone)
         return _print(self._goal.axis, answer.result().result, as_json=as_json)
 
     def _hear_refusals(self) -> list[str]:

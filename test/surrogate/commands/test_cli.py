@@ -88,7 +88,7 @@ def test_point_as_a_page(run, capsys):
     text = capsys.readouterr().out
     for part in (
         'tier closed_form: 600 rev/min, 1000 N, 40 degC',
-        'Contact begins at 294 rev/min (148 to 628; a measured film floor by torque at slow ',
+        'Contact begins at 321 rev/min (168 to 658; a measured film floor by torque at slow ',
         'efficiency           0.936',
         'relieved nut, screw',
         'outside its range',
