@@ -182,14 +182,16 @@ def _folders(folder: Path, out: Path | None) -> list[Path]:
     A link to what is in the folder, or to a folder that it is in, leads to nothing else.
 
     """
-    left = {None if out is None else out.resolve(), *map(Path.resolve, [folder, *folder.parents])}
+    real = folder.resolve()
+    left = {real, *real.parents, *map(Path.resolve, folder.parents)}
+    left |= set() if out is None else {out.resolve()}
     return [
         path
         for path in _held(folder)
         if path.is_dir()
         and not path.name.startswith('.')
         and path.resolve() not in left
-        and not (path.is_symlink() and path.resolve().is_relative_to(folder.resolve()))
+        and not (path.is_symlink() and path.resolve().is_relative_to(real))
     ]
 
 

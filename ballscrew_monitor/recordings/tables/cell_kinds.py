@@ -167,16 +167,18 @@ def _cells(text: bytes) -> Iterator[tuple[int, int, bytes, int]]:
         column += 1
         if digits:
             row = int(digits)
-            column = columns.get(letters) or columns.setdefault(letters, _number(letters))
+            column = columns.get(letters) or columns.setdefault(
+                letters, column_number(letters.decode())
+            )
         if not empty and not bare:
             yield row, column, told, match.end()
 
 
-def _number(letters: bytes) -> int:
+def column_number(letters: str) -> int:
     """Return the number of a column, that of A is 1."""
     number = 0
     for letter in letters.upper():
-        number = LETTERS * number + letter - ord('A') + 1
+        number = LETTERS * number + ord(letter) - ord('A') + 1
     return number
 
 

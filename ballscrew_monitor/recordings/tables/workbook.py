@@ -25,7 +25,7 @@ import zipfile
 import zlib
 
 from ballscrew_monitor.recordings.tables.apart import frame_apart
-from ballscrew_monitor.recordings.tables.cell_kinds import with_kinds
+from ballscrew_monitor.recordings.tables.cell_kinds import column_number, with_kinds
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import find_head, holds_numbers, Line
 from ballscrew_monitor.recordings.tables.names import axis_of_all
@@ -48,7 +48,6 @@ BARE_FORMULA = re.compile(rb'</f>\s*(?:<v>\s*</v>|<v\s*/>)?\s*</c>')
 HIDDEN = re.compile(rb'<(?:\w+:)?row\b[^>]*\bhidden="(?:1|true)"')
 COLUMN, ROW = '[A-Za-z]{1,7}', '[0-9]{1,19}'
 PLAIN_CELL = re.compile(f'<c r="({COLUMN})({ROW})"'.encode())
-LETTERS = 26
 SIZES = CELL_SIZE // 8  # of a sheet unpacked: a cell is written in eight bytes and more
 VALUES = ('v', 'is')  # elements that hold the value of a cell
 
@@ -298,16 +297,10 @@ def _plain_cells(texts: Iterator[bytes]) -> _Extent | None:
             return None
         if references:
             letters, digits = map(set, zip(*references))
-            extent.add({int(one) for one in digits}, {_column(one.decode()) for one in letters})
+            extent.add(
+                {int(one) for one in digits}, {column_number(one.decode()) for one in letters}
+            )
     return extent
-
-
-def _column(letters: str) -> int:
-    """Return the number of a column, that of A is 1."""
-    number = 0
-    for letter in letters.upper():
-        number = LETTERS * number + ord(letter) - ord('A') + 1
-    return number
 
 
 def _cells(texts: Iterator[bytes]) -> _Extent:
@@ -342,7 +335,7 @@ class _CellReader:
                 match = re.fullmatch(f'({COLUMN})({ROW})', attributes['r'])  # such as B7
                 if not match:
                     raise ValueError(f'a cell is called {short(attributes["r"])}')
-                row, self._column = int(match[2]), _column(match[1])
+                row, self._column = int(match[2]), column_number(match[1])
             self._place = row, self._column
         self._is_value = self._is_value or kind in VALUES
 

@@ -100,14 +100,9 @@ def test_rcs_falls_with_speed_at_every_node():
     assert not (np.diff(shares, axis=0) > 0).any()
 
 
-@pytest.mark.parametrize('s', [-1.0, 1.5])
+@pytest.mark.parametrize('s', [-1.5, 1.5])
 def test_a_node_is_what_the_solver_gives(screw, oil, s):
-    """
-    At 40 degC and preload, on either side of the onset; on the grids of a chain.
-
-    A node is a formula times a ratio that is drawn between solved points: 0.0011 off at most.
-
-    """
+    """At 40 degC and preload, on either side of the onset; on the grids of a chain."""
     k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
     j = int(np.argmin(np.abs(DATA.load)))
     i = int(np.searchsorted(DATA.speed_coordinate, s))
@@ -116,4 +111,4 @@ def test_a_node_is_what_the_solver_gives(screw, oil, s):
     found = solve_chain(chain_inputs(screw, oil, load, heat, [speed]))['opposing'][0]
     for name in ('film_ratio', 'central_film', 'friction_torque', 'rcs'):
         node = DATA.fields[name][i, j, k]
-        assert found[name] == pytest.approx(node, rel=1.5e-3, abs=1e-9)
+        assert found[name] == pytest.approx(node, rel=1e-3, abs=1e-9)
